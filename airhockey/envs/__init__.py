@@ -1,0 +1,74 @@
+"""The challenge environments: scene, control step, tasks, rules, disturbances, and the official wrapper.
+
+    from airhockey import envs
+
+    env = envs.make("7dof-prepare", disturbances="server")
+    observation = env.reset(seed=0)
+    observation, reward, absorbing, info = env.step(action)
+
+Heavy modules (MuJoCo, numba, MushroomRL) are imported when a name is first used.
+"""
+
+import importlib
+import importlib.metadata
+import platform
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from airhockey.envs.disturbances import Disturbances, load_disturbances
+    from airhockey.envs.editions import Edition, edition
+    from airhockey.envs.environment import Environment
+    from airhockey.envs.mushroom import AirHockeyChallengeWrapper
+
+ENVIRONMENTS = ("3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare", "tournament")
+"""The names that `make` accepts."""
+
+__all__ = [
+    "ENVIRONMENTS",
+    "AirHockeyChallengeWrapper",
+    "Disturbances",
+    "Edition",
+    "Environment",
+    "edition",
+    "load_disturbances",
+    "make",
+    "versions",
+]
+
+_HOMES = {
+    "AirHockeyChallengeWrapper": "mushroom",
+    "Disturbances": "disturbances",
+    "load_disturbances": "disturbances",
+    "Edition": "editions",
+    "edition": "editions",
+    "Environment": "environment",
+}
+
+
+def make(
+    name: str,
+    interpolation_order: Any = 3,
+    disturbances: "str | Any" = "ideal",
+    edition: str = "2023",
+    visual: bool = False,
+) -> "Environment":
+    """Make an environment; see `Environment` for the arguments.
+
+    Raises:
+        ConfigurationError: An unknown name, order, profile or edition.
+    """
+    from airhockey.envs.environment import Environment
+
+    return Environment(name, interpolation_order, disturbances, edition, visual)
+
+
+def versions() -> dict[str, str]:
+    """Versions that a record must name: results of contacts differ between MuJoCo's."""
+    packages = {name: importlib.metadata.version(name) for name in ("airhockey", "mujoco", "numpy", "numba")}
+    return {**packages, "python": platform.python_version()}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module(f"airhockey.envs.{_HOMES[name]}"), name)

@@ -1,0 +1,168 @@
+"""The rules of one year's challenge, as data: `edition("2023")` reads `assets/editions/2023.yaml`.
+
+Ranges and names may differ between editions; code asks the edition and knows no number of its own.
+"""
+
+from functools import cache
+from importlib import resources
+from typing import Any
+
+import msgspec
+import yaml
+
+from airhockey.envs.specs import IIWA, MALLET, PLANAR, PUCK, TABLE, RobotSpec
+from airhockey.errors import ConfigurationError, unknown
+
+Range = tuple[float, float]
+ROBOTS: dict[str, RobotSpec] = {"planar": PLANAR, "iiwa": IIWA}
+
+_LENGTHS = {
+    "hit_width": TABLE.width / 2 - PUCK.radius - 2 * MALLET.radius,
+    "goal_half_width": TABLE.goal_width / 2,
+    "half_length": TABLE.length / 2,
+    "half_width": TABLE.width / 2,
+}
+
+
+class Horizon(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Control steps in an episode of a task, and in a game."""
+
+    task: int
+    game: int
+
+
+class Over(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Thresholds that end an episode, in [m/s] and [m]."""
+
+    max_speed: float
+    standstill: float
+    middle_line: float
+
+
+class Success(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Where, and how slow, the puck must be at the end of defend and prepare, in [m] and [m/s]."""
+
+    near_x: float
+    far_x: float
+    slow: float
+    band_half_width: float
+
+
+class GameRules(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Faults and stuck pucks, in [s], [m] and [m/s]."""
+
+    fault_time: float
+    faults_per_point: int
+    middle_zone: float
+    stuck_speed: float
+
+
+class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Ranges of the puck's start in world coordinates: [m], [m/s], [rad], [rad/s]; at rest without the last three."""
+
+    x: Range
+    y: Range
+    speed: Range | None = None
+    angle: Range | None = None
+    yaw_rate: Range | None = None
+
+
+class EnvironmentRules(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What an environment consists of."""
+
+    robot: str
+    robots: int
+    kind: str
+    start: str
+    opponent: str | None = None
+
+
+class TimePenalty(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Points for an episode whose longest `draw_action` (or its mean) took more than so many seconds."""
+
+    max_above: float
+    points: float
+    mean_above: float = float("inf")
+
+
+class Deployability(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Most penalty points of a run (1000 episodes) that is still deployable, or still improvable."""
+
+    deployable: float
+    improvable: float
+
+    def class_of(self, penalty: float) -> str:
+        """The class of a run with so many penalty points."""
+        if penalty <= self.deployable:
+            return "Deployable"
+        return "Improvable" if penalty <= self.improvable else "Non-deployable"
+
+
+class Edition(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """All the rules of one edition; the fields are explained in its YAML file."""
+
+    edition: str
+    horizon: Horizon
+    discount: float
+    over: Over
+    success: Success
+    game: GameRules
+    starts: dict[str, Start]
+    environments: dict[str, EnvironmentRules]
+    penalty_points: dict[str, float]
+    computation_time: tuple[TimePenalty, ...]
+    deployability: Deployability
+    game_penalty_per_episode: float
+    score_weights: dict[str, dict[str, float]]
+
+    def environment(self, name: str) -> EnvironmentRules:
+        """The rules of one environment; raises `ConfigurationError` for a name that this edition does not have."""
+        if name not in self.environments:
+            raise unknown(f"environment of edition {self.edition}", name, self.environments)
+        return self.environments[name]
+
+    @property
+    def deployability_limits(self) -> Range:
+        """Most points of the classes Deployable and Improvable."""
+        return self.deployability.deployable, self.deployability.improvable
+
+    def time_penalty(self, longest: float, mean: float) -> float:
+        """Points for an episode's computation times, in [s] (challenge rules, section "computation time")."""
+        for rule in self.computation_time:
+            if longest > rule.max_above or mean > rule.mean_above:
+                return rule.points
+        return 0.0
+
+
+def available() -> tuple[str, ...]:
+    """The names of the editions in this package."""
+    folder = resources.files("airhockey.envs").joinpath("assets/editions")
+    return tuple(sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml")))
+
+
+@cache
+def edition(name: str = "2023") -> Edition:
+    """Read and check an edition of the rules.
+
+    Raises:
+        ConfigurationError: No such edition, or its file is not valid.
+    """
+    if name not in available():
+        raise unknown("edition", name, available())
+    text = resources.files("airhockey.envs").joinpath(f"assets/editions/{name}.yaml").read_text(encoding="utf-8")
+    try:
+        return msgspec.convert(_with_lengths(yaml.safe_load(text)), Edition)
+    except (msgspec.ValidationError, yaml.YAMLError) as error:
+        raise ConfigurationError(f"edition {name!r} is not valid: {error}") from error
+
+
+def _with_lengths(value: Any) -> Any:
+    """Replace the names of lengths, or their negatives, by numbers."""
+    if isinstance(value, dict):
+        return {key: _with_lengths(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_with_lengths(item) for item in value]
+    if isinstance(value, str) and value.removeprefix("-") in _LENGTHS:
+        length = _LENGTHS[value.removeprefix("-")]
+        return -length if value.startswith("-") else length
+    return value

@@ -1,0 +1,274 @@
+"""The challenge environment: a task or a game on the simulation, as the evaluator, the trainers and the adapters use it."""
+
+import pathlib
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from airhockey.envs.actions import ActionFormat
+from airhockey.envs.constraints import constraint_slices
+from airhockey.envs.disturbances import Disturbances, load_disturbances
+from airhockey.envs.editions import ROBOTS, Edition, edition
+from airhockey.envs.info import make_env_info
+from airhockey.envs.kernel import referee
+from airhockey.envs.kernel.control_step import SUCCESS
+from airhockey.envs.kernel.opponent import ORDER as OPPONENT_ORDER
+from airhockey.envs.perception import Perception
+from airhockey.envs.plant_mismatch import PlantMismatch
+from airhockey.envs.simulation import Simulation
+from airhockey.envs.specs import CONTROL_PERIOD, SUBSTEPS, TABLE
+from airhockey.envs.starts import draw_start
+from airhockey.errors import ActionError
+
+Array = NDArray[np.float64]
+Seed = int | np.random.SeedSequence | None
+Order = int | None
+
+_KINDS = {"hit": referee.HIT, "defend": referee.DEFEND, "prepare": referee.PREPARE, "game": referee.GAME}
+
+
+class Environment:
+    """One of the challenge's environments.
+
+    An action is what the interpolation order asks of one robot, or a pair of them in the tournament. An observation, in the
+    robot frame of the player:
+
+    | index (n joints) | quantity | unit |
+    |---|---|---|
+    | 0–2 | puck x, y, yaw | m, m, rad |
+    | 3–5 | puck velocity | m/s, m/s, rad/s |
+    | 6 … 6+n−1 | joint positions | rad |
+    | 6+n … 6+2n−1 | joint velocities, filtered | rad/s |
+    | 6+2n … 8+2n | opponent's rod tip x, y, z (scenes with two robots) | m |
+
+    Args:
+        name: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare" or "tournament".
+        interpolation_order: 1, 2, 3, 4, 5, -1 or None; in the tournament also a pair of them.
+        disturbances: A profile's name, the path of a YAML file, or a profile.
+        edition_name: The year whose rules apply.
+        visual: Draw the arms' links, for viewers; physics is the same.
+
+    Attributes:
+        env_info: What agents are built with.
+        horizon: Control steps in an episode.
+        dt: Length of a control step, in [s].
+        n_agents: Number of robots in the scene.
+        n_players: Number of robots that take actions.
+    """
+
+    dt = CONTROL_PERIOD
+
+    def __init__(
+        self,
+        name: str,
+        interpolation_order: Order | tuple[Order, Order] = 3,
+        disturbances: str | pathlib.Path | Disturbances = "ideal",
+        edition_name: str = "2023",
+        visual: bool = False,
+    ) -> None:
+        self.edition: Edition = edition(edition_name)
+        rules = self.edition.environment(name)
+        robot = ROBOTS[rules.robot]
+        self.name = name
+        self.disturbances = load_disturbances(disturbances)
+        self.n_agents = rules.robots
+        self.n_players = 2 if rules.kind == "game" else 1
+        self.horizon = self.edition.horizon.game if rules.kind == "game" else self.edition.horizon.task
+        orders = interpolation_order if isinstance(interpolation_order, tuple) else (interpolation_order,) * 2
+        self.formats = [ActionFormat(order, robot.n_joints) for order in orders[: self.n_players]]
+        self._kind, self._start = _KINDS[rules.kind], rules.start
+        codes = [form.code for form in self.formats] + [OPPONENT_ORDER] * (self.n_agents - self.n_players)
+        self.simulation = Simulation(
+            robot,
+            rules.robots,
+            _referee_rules(self.edition),
+            self._kind,
+            np.array(codes, dtype=np.int64),
+            rules.opponent == "figure_of_eight",
+            visual,
+        )
+        self.env_info = make_env_info(name, self.simulation, self.formats, self.edition, self.horizon)
+        self.constraint_slices = constraint_slices(self.simulation.arm)
+        self._game = self.simulation.game
+        rows = max([form.rows for form in self.formats] + [2] * (self.n_agents - self.n_players))
+        self._action = np.zeros((self.n_agents, rows, robot.n_joints))
+        self._slots = [self._action[r, : form.rows].reshape(form.shape) for r, form in enumerate(self.formats)]
+        self._make_slices()
+        self._no_noise = np.zeros((0, self.n_agents, robot.n_joints))
+        self._torque_deviation = self.disturbances.torque * self.simulation.arm.torque_limit
+        self._mismatch = PlantMismatch(self.simulation.model, robot, self.n_agents)
+        self._perceptions = [Perception(self.disturbances, robot.n_joints) for _ in range(self.n_players)]
+        self._seed_streams(np.random.SeedSequence())
+        self.step_count = 0
+
+    @property
+    def base_observation(self) -> Array:
+        """The true state in world coordinates, as `reset(state=…)` accepts it: puck, joints, opponent, per robot."""
+        return self.simulation.readings.base.flatten()
+
+    @property
+    def true_observation(self) -> Array:
+        """The observation without disturbances, which judging uses."""
+        return self.simulation.flat[self._observations].copy()
+
+    @property
+    def constraint_values(self) -> Array:
+        """Constraint values of the latest step, violated where positive; shape (K,), in the tournament (2, K)."""
+        values = self.simulation.readings.constraints
+        return values if self.n_players == 2 else values[0]
+
+    def reset(
+        self, seed: Seed = None, state: Array | None = None, start_random: np.random.RandomState | None = None
+    ) -> Array:
+        """Begin an episode, or in the tournament a game (with a seed) or its next serve (without).
+
+        Args:
+            seed: Decides the start and every disturbance. An integer s gives the official start of `np.random.seed(s)`.
+                Without one the present random streams go on.
+            state: A base observation; joints and puck are put there after the start was drawn.
+            start_random: Draw the start from this generator instead of the environment's own.
+
+        Returns:
+            The observation.
+        """
+        if seed is not None:
+            self._seed_streams(seed)
+        elif self._kind == referee.GAME:
+            self._game.side[0] = 0
+        if start_random is not None:
+            self._start_random = start_random
+        self._mismatch.apply(self.disturbances.mismatch, self._plant_random)
+        puck = self._draw_puck()
+        if state is None:
+            self.simulation.reset(*puck)
+        else:
+            self._restore(np.asarray(state, dtype=np.float64))
+        for perception, random in zip(self._perceptions, self._perception_randoms, strict=True):
+            perception.reset(random)
+        self.step_count = 0
+        return self._observe()
+
+    def step(self, action: Any) -> tuple[Array, float, bool, dict[str, Any]]:
+        """Advance by one control step of 0.02 s.
+
+        Returns:
+            Observation, reward (always 0: trainers bring their own), whether the episode is over, and `info` with
+            `constraints_value`, `jerk`, `success`; in the tournament a pair of constraint values, `score` and `faults`.
+
+        Raises:
+            ActionError: The action has the wrong shape or type, or is not finite; nothing was simulated.
+            SimulationError: The engine warned.
+        """
+        self.step_count += 1
+        self._take(action)
+        noise = self._no_noise
+        if self.disturbances.torque > 0.0:
+            shape = (SUBSTEPS, *self._no_noise.shape[1:])
+            noise = self._plant_random.standard_normal(shape) * self._torque_deviation
+        verdict = self.simulation.step(self._action, noise, self.step_count)
+        self.verdict = verdict & ~SUCCESS
+        return self._observe(), 0.0, self.verdict != referee.GOING_ON, self._info(verdict)
+
+    def new_game(self) -> None:
+        """Score and faults to zero, and a new draw of the side that serves first."""
+        game = self._game
+        game.score[:], game.faults[:], game.side[:], game.timer[0] = 0, 0, (0, 1), 0.0
+        if self._kind == referee.GAME:
+            game.side[1] = self._start_random.choice([1, -1])
+
+    def _seed_streams(self, seed: int | np.random.SeedSequence) -> None:
+        """One random stream per owner: the start, the plant, each player's perception."""
+        sequence = seed if isinstance(seed, np.random.SeedSequence) else np.random.SeedSequence(seed)
+        children = [_child(sequence, index) for index in range(4)]
+        if isinstance(seed, np.random.SeedSequence):
+            self._start_random = np.random.RandomState(np.random.MT19937(children[0]))
+        else:
+            self._start_random = np.random.RandomState(seed)
+        self._plant_random = np.random.default_rng(children[1])
+        self._perception_randoms = [np.random.default_rng(child) for child in children[2 : 2 + self.n_players]]
+        self.new_game()
+
+    def _draw_puck(self) -> tuple[Array, Array]:
+        position, velocity = draw_start(self._start, self.edition.starts, self._start_random)
+        if self._kind == referee.GAME:
+            position[0] *= self._game.side[1]
+        return position, velocity
+
+    def _restore(self, state: Array) -> None:
+        n, width = self.simulation.robot.n_joints, self.simulation.readings.observation.shape[1]
+        if state.shape != (self.n_agents * width,) or not np.isfinite(state).all():
+            raise ActionError(
+                f"the state to reset to has shape {state.shape} or values that are not finite; "
+                f"{self.name} takes a base observation of {self.n_agents * width} finite numbers"
+            )
+        rows = state.reshape(self.n_agents, width)
+        puck = rows[-1]  # both robots' rows hold the puck
+        self.simulation.reset(puck[:3], puck[3:6], rows[:, 6 : 6 + n].copy(), rows[:, 6 + n : 6 + 2 * n].copy())
+
+    def _make_slices(self) -> None:
+        """Where each reading stands in the simulation's flat array."""
+        readings = self.simulation.readings
+        base, width = readings.base.size, readings.base.shape[1]
+        self._observations = slice(base, base + self.n_players * width)
+        count = readings.constraints.shape[1]
+        self._constraints = [
+            {name: slice(first + part.start, first + part.stop) for name, part in self.constraint_slices.items()}
+            for first in (2 * base, 2 * base + count)[: self.n_players]
+        ]
+        self._jerk = slice(2 * base + readings.constraints.size, self.simulation.flat.size)
+
+    def _take(self, action: Any) -> None:
+        """Check the action and put it where compiled code reads it, which also checks that it is finite."""
+        if self.n_players == 1:
+            self._take_one(0, action)
+            return
+        if not isinstance(action, (tuple, list, np.ndarray)) or len(action) != 2:
+            raise ActionError(f"step {self.step_count}: the tournament takes a pair of actions, one per player")
+        self._take_one(0, action[0])
+        self._take_one(1, action[1])
+
+    def _take_one(self, player: int, action: Any) -> None:
+        form = self.formats[player]
+        if type(action) is not np.ndarray or action.shape != form.shape or action.dtype != np.float64:
+            label = f", player {player + 1}" if self.n_players == 2 else ""
+            action = form.check(action, self.step_count, label)
+        self._slots[player][...] = action
+
+    def _observe(self) -> Array:
+        if not self.disturbances.blurs_observations:
+            return self.simulation.flat[self._observations].copy()
+        true = self.simulation.readings.observation
+        return np.concatenate([see.observe(row) for see, row in zip(self._perceptions, true, strict=False)])
+
+    def _info(self, verdict: int) -> dict[str, Any]:
+        flat = self.simulation.flat
+        by_name = [{name: flat[part] for name, part in parts.items()} for parts in self._constraints]
+        if self.n_players == 2:
+            score, faults = self._game.score.tolist(), self._game.faults.tolist()
+            return {"constraints_value": by_name, "jerk": flat[self._jerk], "score": score, "faults": faults}
+        return {"constraints_value": by_name[0], "jerk": flat[self._jerk], "success": int(verdict >= SUCCESS)}
+
+
+def _child(sequence: np.random.SeedSequence, index: int) -> np.random.SeedSequence:
+    """A child that depends on nothing but its parent and index (`spawn` counts how often it was called)."""
+    return np.random.SeedSequence(sequence.entropy, spawn_key=(*sequence.spawn_key, index))
+
+
+def _referee_rules(rules: Edition) -> referee.Rules:
+    return referee.Rules(
+        half_length=TABLE.length / 2,
+        half_width=TABLE.width / 2,
+        goal_half_width=TABLE.goal_width / 2,
+        max_speed=rules.over.max_speed,
+        near_x=rules.success.near_x,
+        far_x=rules.success.far_x,
+        band_half_width=rules.success.band_half_width,
+        slow=rules.success.slow,
+        standstill=rules.over.standstill,
+        middle_line=rules.over.middle_line,
+        fault_time=rules.game.fault_time,
+        faults_per_point=rules.game.faults_per_point,
+        middle_zone=rules.game.middle_zone,
+        stuck_speed=rules.game.stuck_speed,
+    )

@@ -1,0 +1,147 @@
+"""The official interface: `AirHockeyChallengeWrapper`, a MushroomRL environment over the same simulation."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from airhockey.envs.environment import Environment as ChallengeEnvironment
+from airhockey.envs.info import RLInfo
+from airhockey.errors import MissingDependencyError
+
+try:
+    from mushroom_rl.core import Environment, MDPInfo
+    from mushroom_rl.utils.spaces import Box
+except ImportError as error:
+    raise MissingDependencyError(
+        f"the official wrapper needs MushroomRL, and {error.name or 'a part of it'} cannot be imported ({error}); "
+        "install it with: pip install 'airhockey[mushroom]' (cv2 also wants Debian's libgl1 and libglib2.0-0)"
+    ) from error
+
+Array = NDArray[np.float64]
+Reward = Callable[["BaseEnvironment", Array, Any, Array, bool], float]
+
+
+class BaseEnvironment:
+    """What the official package calls the base environment: the scene, with observations in world coordinates.
+
+    Attributes:
+        model, data: MuJoCo's. Moving something there moves it in the simulation.
+        env_info: The same dictionary as the wrapper's.
+        init_state: Joint positions at the start, in [rad]. Shape (n,).
+    """
+
+    def __init__(self, env: ChallengeEnvironment, env_info: dict[str, Any]) -> None:
+        self._env = env
+        self.env_info = env_info
+        self.n_agents = env.n_agents
+        self.init_state = np.array(env.simulation.robot.start)
+
+    @property
+    def model(self) -> Any:
+        """MuJoCo's model of the scene."""
+        return self._env.simulation.model
+
+    @property
+    def data(self) -> Any:
+        """MuJoCo's data of the scene."""
+        return self._env.simulation.data
+
+    _model, _data = model, data
+
+    @property
+    def info(self) -> Any:
+        """MushroomRL's `MDPInfo`."""
+        return self.env_info["rl_info"]
+
+    @property
+    def dt(self) -> float:
+        """Length of a control step, in [s]."""
+        return self._env.dt
+
+    def get_puck(self, observation: Array) -> tuple[Array, Array]:
+        """Position (x, y, yaw) and velocity of the puck in a base observation, each of shape (3,)."""
+        return observation[:3], observation[3:6]
+
+    def get_joints(self, observation: Array, agent: int | None = None) -> tuple[Array, Array]:
+        """Joint positions and velocities of a robot (1 or 2; default: 1) in a base observation, each of shape (n,)."""
+        n = self._env.simulation.robot.n_joints
+        first = 6 if agent in (None, 1) else 6 + observation.size // 2
+        return observation[first : first + n], observation[first + n : first + 2 * n]
+
+    def is_absorbing(self, observation: Array) -> bool:
+        """Whether the latest step ended the episode."""
+        return bool(self._env.verdict != 0)
+
+
+class AirHockeyChallengeWrapper(Environment):
+    """The environment as agents of the 2023 challenge know it.
+
+    Args:
+        env: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare" or "tournament".
+        custom_reward_function: Called with (base environment, state, action, next state, absorbing) after each step; the
+            states are base observations, in world coordinates.
+        interpolation_order: 1, 2, 3, 4, 5, -1 or None; in the tournament also a pair of them.
+        disturbances, edition, visual: See `airhockey.envs.Environment`.
+
+    Attributes:
+        base_env: Has `model`, `data`, `env_info` and `init_state`.
+        env_info: What agents are built with.
+        env_name: The name given.
+    """
+
+    def __init__(
+        self,
+        env: str,
+        custom_reward_function: Reward | None = None,
+        interpolation_order: Any = 3,
+        disturbances: Any = "ideal",
+        edition: str = "2023",
+        visual: bool = True,
+        **kwargs: Any,
+    ) -> None:
+        if isinstance(interpolation_order, list):
+            interpolation_order = tuple(interpolation_order)
+        self._env = ChallengeEnvironment(env, interpolation_order, disturbances, edition, visual)
+        self.env_name = env
+        self.env_info = self._env.env_info
+        self.env_info["rl_info"] = _mdp_info(self.env_info["rl_info"])
+        self.base_env = BaseEnvironment(self._env, self.env_info)
+        self._reward = custom_reward_function
+        self._global_start = np.random.mtrand._rand  # agents seed their runs with np.random.seed
+        self._env._start_random = self._global_start
+        self._env.new_game()
+        super().__init__(self.env_info["rl_info"])
+
+    def seed(self, seed: int) -> None:
+        """Seed the disturbances; starts are drawn from NumPy's global generator, as in the official package."""
+        np.random.seed(seed)
+        self._env._seed_streams(seed)
+
+    def reset(self, state: Array | None = None) -> Array:
+        """Begin an episode or, in the tournament, the next serve.
+
+        Args:
+            state: A base observation to restore joints and puck from.
+        """
+        return self._env.reset(state=state, start_random=self._global_start)
+
+    def step(self, action: Any) -> tuple[Array, float, bool, dict[str, Any]]:
+        """Advance by one control step; `info` is that of `airhockey.envs.Environment.step`."""
+        if self._reward is None:
+            return self._env.step(action)
+        before = self._env.base_observation
+        observation, reward, absorbing, info = self._env.step(action)
+        reward = self._reward(self.base_env, before, action, self._env.base_observation, absorbing)
+        return observation, reward, absorbing, info
+
+    def stop(self) -> None:
+        """Nothing to stop."""
+
+
+def _mdp_info(info: RLInfo) -> Any:
+    observation, action = info.observation_space, info.action_space
+    return MDPInfo(
+        Box(observation.low, observation.high), Box(action.low, action.high), info.gamma, info.horizon, info.dt
+    )

@@ -1,0 +1,67 @@
+"""What a player sees of the true state: noise, bias, lost tracks and delay, from the player's own random stream."""
+
+import math
+from collections import deque
+
+import numpy as np
+from numpy.typing import NDArray
+
+from airhockey.envs.disturbances import Disturbances
+
+Array = NDArray[np.float64]
+
+
+class Perception:
+    """Disturbs one player's observations.
+
+    Args:
+        disturbances: The profile.
+        n_joints: Number of joints n; an observation is puck (6), joints (2n) and, if there is one, the opponent (3).
+    """
+
+    def __init__(self, disturbances: Disturbances, n_joints: int) -> None:
+        self._profile = disturbances
+        self._n = n_joints
+        puck, joints = disturbances.puck, disturbances.joints
+        self._deviation = np.concatenate(
+            (
+                [puck.position, puck.position, puck.yaw, puck.velocity, puck.velocity, puck.yaw_rate],
+                np.full(n_joints, joints.position),
+                np.full(n_joints, joints.velocity),
+                np.full(3, disturbances.opponent.position),
+            )
+        )
+        self._bias = np.zeros(self._deviation.size)
+        self._seen: deque[Array] = deque(maxlen=disturbances.delay + 1)
+        self._lost_for = 0
+
+    def reset(self, random: np.random.Generator) -> None:
+        """Begin an episode: draw its biases; nothing has been seen yet."""
+        self._random = random
+        self._bias[:2] = random.normal(0.0, self._profile.puck.position_bias, 2)
+        self._bias[6 : 6 + self._n] = random.normal(0.0, self._profile.joints.position_bias, self._n)
+        self._seen.clear()
+        self._lost_for = 0
+
+    def observe(self, true: Array) -> Array:
+        """What the player sees when `true` is the case. Shape as `true`, always a fresh array."""
+        size = true.size
+        seen = true + self._bias[:size] + self._deviation[:size] * self._random.standard_normal(size)
+        seen[2] = (seen[2] + math.pi) % (2.0 * math.pi) - math.pi
+        self._lose_track(seen)
+        self._seen.append(seen)
+        return self._seen[0].copy()
+
+    def _lose_track(self, seen: Array) -> None:
+        """During a loss, show the last state of the puck that was seen."""
+        loss = self._profile.track_loss
+        if self._lost_for == 0 and self._random.random() < loss.probability:
+            self._lost_for = int(self._random.integers(loss.length[0], loss.length[1] + 1))
+        if self._lost_for == 0:
+            return
+        self._lost_for -= 1
+        if not self._seen:
+            return  # nothing seen yet that could be shown again
+        seen[:6] = self._seen[-1][:6]
+        if loss.shows == "zero_velocity":
+            seen[3:6] = 0.0

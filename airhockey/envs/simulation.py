@@ -1,0 +1,208 @@
+"""The simulation under the environment: one scene with its controllers, reset and advanced by control steps.
+
+It knows nothing of tasks beyond handing the referee's rules to compiled code, and nothing of noise beyond adding the torques
+it is given. MuJoCo's objects live as long as it does: compiled code knows only their addresses.
+"""
+
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from airhockey.envs import scene
+from airhockey.envs.kernel.arm import Arm, arm_from_model
+from airhockey.envs.kernel.control_step import BAD_ACTION, BAD_TORQUE, Task, control_step
+from airhockey.envs.kernel.controller import Controller, filter_velocity
+from airhockey.envs.kernel.engine import last_warnings
+from airhockey.envs.kernel.kinematics import WorkSpace, link_rotations, work_space
+from airhockey.envs.kernel.memory import pack, view
+from airhockey.envs.kernel.observation import Readings, read, readings_of, readings_size
+from airhockey.envs.kernel.opponent import Opponent, reset_opponent
+from airhockey.envs.kernel.plant import Geometry, Plant
+from airhockey.envs.kernel.referee import Game, Rules
+from airhockey.envs.kernel.universal_joint import clip_angle, desired_angles, rod_axes
+from airhockey.envs.specs import SUBSTEPS, RobotSpec
+from airhockey.errors import ActionError, SimulationError
+
+Array = NDArray[np.float64]
+
+
+class Simulation:
+    """A scene with its controllers and its referee.
+
+    Args:
+        robot: Which arm plays.
+        n_robots: 1 or 2.
+        rules: Thresholds of the referee.
+        kind: What is judged: a task or a game (`kernel.referee`).
+        orders: Interpolation order of each robot, as compiled code wants it. Shape (n_robots,).
+        moving_opponent: Robot 2 follows the figure of eight.
+        visual: Draw the arms' links.
+
+    Attributes:
+        model, data: MuJoCo's. Changing them changes the simulation.
+        robot_model, robot_data: The arm alone, nominal, as controller and agents know it.
+        arm: The same as arrays.
+        game: Score, faults and timer; compiled code and Python share its arrays.
+        flat: What the latest reset or step left, a fresh array each time; `readings` divides it.
+    """
+
+    def __init__(
+        self,
+        robot: RobotSpec,
+        n_robots: int,
+        rules: Rules,
+        kind: int,
+        orders: NDArray[np.int64],
+        moving_opponent: bool = False,
+        visual: bool = False,
+    ) -> None:
+        self.robot, self.n_robots = robot, n_robots
+        self.model = scene.game_model(robot, n_robots, visual)
+        self.data = mujoco.MjData(self.model)
+        self.robot_model = scene.robot_model(robot)
+        self.robot_data = mujoco.MjData(self.robot_model)
+        self.arm: Arm = arm_from_model(robot, self.robot_model)
+        n = robot.n_joints
+        self._n_constraints = 4 * n + (7 if self.arm.universal_joint else 5)
+        self._size = readings_size(n_robots, n, self._n_constraints)
+        geometry = self._geometry()
+        self._memory = pack(
+            geometry,
+            self.arm,
+            _new_controller(n_robots, n),
+            work_space(n),
+            Opponent(np.zeros(1), np.zeros(n), np.zeros(3)),
+            rules,
+            Game(np.zeros(2, np.int64), np.zeros(2, np.int64), np.array([0, 1]), np.zeros(1)),
+            Task(kind, moving_opponent, self._n_constraints, orders),
+        )
+        self._controller: Controller = view(self._memory, Controller)
+        self._work: WorkSpace = view(self._memory, WorkSpace)
+        self._opponent: Opponent = view(self._memory, Opponent)
+        self.game: Game = view(self._memory, Game)
+        data = self.data
+        self._arrays = (data.ctrl, data.qpos, data.qvel, data.xpos, data.warning.number)
+        self._plant = Plant(ctrl=data.ctrl, qpos=data.qpos, qvel=data.qvel, xpos=data.xpos, **geometry._asdict())
+        self._start = np.tile(np.array(robot.start), (n_robots, 1))
+        self._striker_start = [self._level_striker(row) for row in self._start] if self.arm.universal_joint else []
+        self.reset(np.zeros(3), np.zeros(3))
+
+    @property
+    def readings(self) -> Readings:
+        """Base observation (R, D), observations (R, D), constraints (R, K) and jerk (R, n): views of `flat`."""
+        return readings_of(self.flat, self.n_robots, self.robot.n_joints, self._n_constraints)
+
+    def reset(
+        self,
+        puck_position: Array,
+        puck_velocity: Array,
+        joint_position: Array | None = None,
+        joint_velocity: Array | None = None,
+    ) -> None:
+        """Put everything in its place, at time zero.
+
+        Args:
+            puck_position, puck_velocity: (x, y, yaw) and its derivative in world coordinates. Shape (3,).
+            joint_position, joint_velocity: Default: the start configuration, at rest. Shape (robots, n).
+        """
+        position = self._start if joint_position is None else joint_position
+        velocity = np.zeros_like(position) if joint_velocity is None else joint_velocity
+        data, controller, n = self.data, self._controller, self.robot.n_joints
+        mujoco.mj_resetData(self.model, data)
+        data.qpos[-3:], data.qvel[-3:] = puck_position, puck_velocity
+        for r in range(self.n_robots):
+            first = r * self._plant.stride
+            data.qpos[first : first + n] = position[r]
+            data.qvel[first : first + n] = velocity[r]
+            if self.arm.universal_joint:
+                data.qpos[first + n : first + n + 2] = self._striker_start[r]
+        mujoco.mj_fwdPosition(self.model, data)
+        controller.command[:, 0], controller.command[:, 1], controller.command[:, 2] = position, velocity, 0.0
+        controller.clipped[:] = position
+        controller.velocity[:] = velocity
+        for r in range(self.n_robots):  # the official reset observation passes the filter once more
+            filter_velocity(data.qvel, r * self._plant.stride, controller.velocity[r])
+        controller.striker_average[:] = 0.0
+        controller.striker_seen[:] = 0.0
+        reset_opponent(self._opponent, self._start[-1])
+        self.flat = np.zeros(self._size)
+        read(self._plant, self.arm, controller, self._work, self.readings)
+        last_warnings()
+
+    def step(self, action: Array, noise: Array, step: int) -> int:
+        """Advance by one control step and return the referee's verdict, plus `SUCCESS`; `flat` is then new.
+
+        Args:
+            action: Shape (robots, rows, n).
+            noise: Torques added in each substep, in [N·m]. Shape (20, robots, n), or (0, robots, n) for none.
+            step: Number of the step, for error messages.
+
+        Raises:
+            ActionError: The action is not finite, or so large that the torque is not.
+            SimulationError: The engine warned.
+        """
+        self.flat = flat = np.empty(self._size)
+        verdict: int = control_step(self._memory, *self._arrays, action, noise, flat)
+        if verdict < 0:
+            self._complain(verdict, action, step)
+        return verdict
+
+    def _complain(self, code: int, action: Array, step: int) -> None:
+        self.flat = np.full(self._size, np.nan)
+        if code == BAD_ACTION:
+            raise ActionError(f"step {step}: the action holds values that are not finite; all must be numbers")
+        if code == BAD_TORQUE:
+            raise ActionError(
+                f"step {step}: the action leads to a motor torque that is not a finite number "
+                f"(largest entry {np.abs(action).max():.3g}); send positions in [rad] and velocities in [rad/s]"
+            )
+        names = ", ".join(_warning_names(self.data.warning.number))
+        raise SimulationError(f"step {step}: MuJoCo warned ({names}): {last_warnings() or 'no message'}")
+
+    def _geometry(self) -> Geometry:
+        model, robot = self.model, self.robot
+        bases = robot.base_positions[: self.n_robots]
+        tips = [model.body(f"{robot.prefix}_{r + 1}/{robot.end_effector}").id for r in range(self.n_robots)]
+        return Geometry(
+            model=model._address,
+            data=self.data._address,
+            tips=np.array(tips, dtype=np.int64),
+            sides=np.array([1.0, -1.0][: self.n_robots]),
+            base_x=np.array([base[0] for base in bases]),
+            base_z=bases[0][2],
+            stride=robot.n_joints + (2 if self.arm.universal_joint else 0),
+        )
+
+    def _level_striker(self, joint_position: Array) -> tuple[float, float]:
+        """Angles of the universal joint that level the mallet, in [rad]."""
+        rotations, rod = self._controller.rotations, self._controller.rod
+        link_rotations(self.arm, joint_position, rotations)
+        rod_axes(rotations, rod)
+        first, second = desired_angles(rod)
+        return clip_angle(first), clip_angle(second)
+
+
+def _new_controller(robots: int, n: int) -> Controller:
+    return Controller(
+        command=np.zeros((robots, 3, n)),
+        clipped=np.zeros((robots, n)),
+        velocity=np.zeros((robots, n)),
+        striker_average=np.zeros((robots, 2)),
+        striker_seen=np.zeros(2),
+        set_points=np.zeros((robots, SUBSTEPS, 3, n)),
+        rotations=np.zeros((n, 3, 3)),
+        forces=np.zeros((n, 6)),
+        torque=np.zeros(n),
+        rod=np.zeros((2, 3)),
+    )
+
+
+def _warning_names(counts: Any) -> list[str]:
+    kinds = mujoco.mjtWarning
+    return [
+        name.removeprefix("mjWARN_").lower()
+        for name, kind in kinds.__members__.items()
+        if int(kind) < len(counts) and counts[int(kind)]
+    ]

@@ -1,0 +1,91 @@
+"""What can be said about a run's options before anything is built or written."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from airhockey import envs
+from airhockey.agents import AGENTS
+from airhockey.agents.submission import submission_config
+from airhockey.envs.disturbances import load_disturbances
+from airhockey.envs.editions import Edition, edition
+from airhockey.errors import ConfigurationError, unknown
+from airhockey.evaluator.episode import CLOCKS
+from airhockey.evaluator.games.records import VARIANTS, GameOptions
+from airhockey.evaluator.records import Options
+
+ORDERS = (1, 2, 3, 4, 5, -1, "none", "agent")
+
+
+def check_options(options: Options) -> None:
+    """Find the mistakes in a run's options.
+
+    Raises:
+        ConfigurationError: Something in them has no meaning; the message says what would have.
+    """
+    rules = edition(options.edition)
+    if options.episodes < 1:
+        raise ConfigurationError(f"the number of episodes must be positive, not {options.episodes}")
+    if options.seed < 0:
+        raise ConfigurationError(f"the seed must not be negative, as {options.seed} is")
+    if options.interpolation_order not in ORDERS:
+        raise unknown("interpolation order", options.interpolation_order, map(str, ORDERS))
+    if options.clock not in CLOCKS:
+        raise unknown("clock", options.clock, CLOCKS)
+    if not options.environments:
+        raise ConfigurationError(f"no environment to evaluate on; there are {', '.join(task_environments(rules))}")
+    for name in options.environments:
+        _check_environment(name, rules)
+    load_disturbances(options.disturbances)
+    check_agent(options.agent, options.environments)
+
+
+def check_versions(began_with: Mapping[str, str], path: Path) -> None:
+    """What was begun with other software cannot go on with this one; raises `ConfigurationError`."""
+    for name, version in envs.versions().items():
+        if began_with.get(name) != version:
+            raise ConfigurationError(
+                f"the run in {str(path)!r} began with {name} {began_with.get(name)}, but this is {version}: "
+                "results would differ"
+            )
+
+
+def task_environments(rules: Edition) -> tuple[str, ...]:
+    """Names of the environments that one player is evaluated on; a game of two is not among them."""
+    return tuple(name for name, environment in rules.environments.items() if environment.kind != "game")
+
+
+def _check_environment(name: str, rules: Edition) -> None:
+    tasks = task_environments(rules)
+    if name in rules.environments and name not in tasks:
+        raise ConfigurationError(f"{name!r} is a game of two players, not a task; the tasks are {', '.join(tasks)}")
+    if name not in tasks:
+        raise unknown("environment", name, tasks)
+
+
+def check_game_options(options: GameOptions) -> None:
+    """Find the mistakes in how games are to be played; raises `ConfigurationError`."""
+    edition(options.edition)
+    if options.steps < 1:
+        raise ConfigurationError(f"the number of steps must be positive, not {options.steps}")
+    if options.clock not in CLOCKS:
+        raise unknown("clock", options.clock, CLOCKS)
+    if options.variant not in VARIANTS:
+        raise unknown("variant of the rules", options.variant, VARIANTS)
+    load_disturbances(options.disturbances)
+
+
+def check_agent(agent: str, environments: tuple[str, ...]) -> None:
+    """An agent of the registry must play these environments; a submission's folder must be one.
+
+    Raises:
+        ConfigurationError: It does not, or it is not.
+    """
+    if agent not in AGENTS:
+        if Path(agent).exists() or "/" in agent or agent.startswith("."):
+            submission_config(Path(agent))
+            return
+        raise unknown("agent (or path of a submission's folder)", agent, AGENTS)
+    for name in environments:
+        if name not in AGENTS[agent].environments:
+            playable = ", ".join(AGENTS[agent].environments)
+            raise ConfigurationError(f"agent {agent!r} does not play {name!r}; it plays {playable}")

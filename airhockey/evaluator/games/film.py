@@ -1,0 +1,50 @@
+"""A game as it was played, for replays: where puck and joints truly were at every step, in single precision."""
+
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+Rows = NDArray[np.float32]
+
+
+class Film:
+    """Keeps one row per control step: the base observation at the step's end, in world coordinates.
+
+    Args:
+        steps: Most rows; all the memory is taken at once.
+        width: Entries of a base observation.
+    """
+
+    def __init__(self, steps: int, width: int) -> None:
+        self._rows = np.empty((steps, width), dtype=np.float32)
+        self._filled = 0
+
+    @property
+    def rows(self) -> Rows:
+        """What was kept. Shape (steps played, width)."""
+        return self._rows[: self._filled]
+
+    def add(self, env: Any) -> None:
+        """Keep the present state."""
+        self._rows[self._filled] = env.base_observation
+        self._filled += 1
+
+
+def write_film(path: Path, rows: Rows, record: bytes) -> None:
+    """Write a game's rows, with its record as JSON; the file is complete once it has its name."""
+    part = path.with_suffix(".part")
+    with h5py.File(part, "w", libver="latest") as file:
+        file.create_dataset(
+            "base_observations", data=rows, chunks=True, compression="gzip", compression_opts=1, shuffle=True
+        )
+        file.attrs["record"] = np.void(record)
+    part.replace(path)
+
+
+def read_film(path: Path) -> Rows:
+    """The base observations of a game. Shape (steps, 46)."""
+    with h5py.File(path) as file:
+        return np.asarray(file["base_observations"])

@@ -1,0 +1,32 @@
+"""Players of robot air hockey: they see `env_info` and observations, and answer with joint commands.
+
+    from airhockey.agents import AGENTS, build_agent
+    agent = build_agent("thesis", env_info)
+
+`AGENTS` lists the players that come with the package; `build_agent` also takes the folder of a submission.
+Nothing heavy is imported before an agent is built.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from airhockey.agents.base import AgentBase
+    from airhockey.agents.registry import AGENTS, AgentEntry, build_agent
+
+__all__ = ["AGENTS", "AgentBase", "AgentEntry", "build_agent"]
+
+_HOMES = {
+    "AGENTS": "airhockey.agents.registry",
+    "AgentBase": "airhockey.agents.base",
+    "AgentEntry": "airhockey.agents.registry",
+    "build_agent": "airhockey.agents.registry",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import what the layer offers when it is first asked for (PEP 562)."""
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    import importlib
+
+    return getattr(importlib.import_module(_HOMES[name]), name)

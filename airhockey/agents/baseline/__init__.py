@@ -1,0 +1,1 @@
+"""The planning player `baseline`: it predicts, chooses a skill, plans and tracks."""

@@ -1,0 +1,113 @@
+"""`baseline`: the planning player. It keeps track of the puck, chooses a skill and lets it act."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from airhockey.agents.base import AgentBase, Array
+from airhockey.agents.baseline.defend import Defend
+from airhockey.agents.baseline.prepare import Prepare
+from airhockey.agents.baseline.ready import Ready
+from airhockey.agents.baseline.skill import Situation, Skill
+from airhockey.agents.baseline.smash import Smash
+from airhockey.agents.baseline.tactics import choose
+from airhockey.agents.control.joint_controller import JointController
+from airhockey.agents.control.kinematics import ArmKinematics, spec_of
+from airhockey.agents.control.workspace import Workspace
+from airhockey.agents.estimation.kalman import Noise, PuckEstimate, PuckFilter
+from airhockey.agents.estimation.prediction import PuckPredictor
+from airhockey.agents.table import CONTACT, opponent_in_table, to_table
+
+_NEAR = 0.012
+"""Gap between puck and mallet, in [m], at which they may be touching within a step."""
+WARM_UP_STEPS = 60
+"""Per skill and puck."""
+NOISE = Noise(drift_velocity=0.001, drift_share=0.002)
+"""A slow puck is almost undisturbed: long averages are what makes a strike accurate."""
+
+
+class BaselineAgent(AgentBase):
+    """Filter, choice of a skill, and the skill."""
+
+    interpolation_order = 3
+
+    def __init__(self, env_info: Mapping[str, Any], agent_id: int = 1, **kwargs: Any) -> None:
+        """Build the player; every skill plans once here, so that nothing is slow in the game.
+
+        Args:
+            env_info: Description of the environment.
+            agent_id: 1 or 2.
+            kwargs: Ignored.
+        """
+        super().__init__(env_info, agent_id, **kwargs)
+        self._dt = float(env_info["dt"])
+        self._controller = JointController(ArmKinematics(spec_of(env_info)), Workspace.of(env_info), self._dt)
+        self._filter = PuckFilter(self._dt, NOISE)
+        self._predictor = PuckPredictor()
+        self._task = str(env_info["env_name"]).rpartition("-")[2]
+        self._smash = Smash(env_info)
+        self._skills: dict[str, Skill] = {
+            "smash": self._smash,
+            "ready": Ready(env_info),
+            "defend": Defend(env_info),
+            "prepare": Prepare(env_info),
+        }
+        self._warm_up()
+        self.reset()
+
+    def reset(self) -> None:
+        """See `AgentBase.reset`."""
+        self._filter.reset()
+        self._smash.forget()
+        self._skill: Skill | None = None
+        self._step = 0
+
+    def draw_action(self, observation: Array) -> Array:
+        """See `AgentBase.draw_action`."""
+        if self._step == 0:  # joints are observed once; afterwards the commands are the joints
+            self._controller.reset(self.get_joint_pos(observation))
+        situation = self._look(observation)
+        skill = self._choose(situation)
+        self._step += 1
+        action = skill.act(situation)
+        self.phase = f"{skill.name} {skill.phase}"
+        return action
+
+    def _warm_up(self) -> None:
+        """Let every skill act on some pucks: what is compiled or loaded at a first call must not be so in the game."""
+        opponent = np.array([0.86, 0.0])
+        for velocity in (np.zeros(2), np.array([-1.5, 0.3]), np.array([-0.2, 0.1])):
+            for skill in self._skills.values():
+                for step in range(WARM_UP_STEPS):
+                    puck = np.concatenate([np.array([-0.5, 0.1]) - step * self._dt * velocity, velocity, np.zeros(1)])
+                    estimate = PuckEstimate(puck, 1e-6 * np.eye(5), 0)
+                    now = Situation(estimate, self._predictor, self._controller, opponent, step, self._dt)
+                    if step == 0:
+                        self._controller.reset(np.array(self._controller.kinematics.spec.start))
+                        self._smash.forget()
+                        skill.begin(now)
+                    self._smash.scout(now)
+                    skill.act(now)
+
+    def _choose(self, situation: Situation) -> Skill:
+        """The skill for this step, begun if it is another than before or had finished."""
+        before = self._skill
+        has_shot = self._task not in ("defend", "prepare") and self._smash.scout(situation) is not None
+        name = before.name if before is not None else "ready"
+        finished = before is None or before.finished
+        skill = self._skills[choose(self._task, name, finished, self._smash.committed, has_shot, situation)]
+        if skill is not before:
+            skill.begin(situation)
+            self._skill = skill
+        return skill
+
+    def _look(self, observation: Array) -> Situation:
+        tip = to_table(self._controller.tip_position())
+        position, velocity = self.get_puck_state(observation)
+        opponent = opponent_in_table(observation, self.env_info)
+        puck = np.array([*to_table(position), position[2]])
+        mallets = [tip] if opponent is None else [tip, opponent]
+        touching = any(np.hypot(*(puck[:2] - mallet)) < CONTACT + _NEAR for mallet in mallets)
+        estimate = self._filter.update(puck, velocity, touching)
+        return Situation(estimate, self._predictor, self._controller, opponent, self._step, self._dt)

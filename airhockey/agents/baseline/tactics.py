@@ -1,0 +1,47 @@
+"""Which skill plays: the table of what the baseline does when."""
+
+import numpy as np
+
+from airhockey.agents.baseline.skill import Situation
+from airhockey.agents.table import CONTACT, HALF_LENGTH
+
+SLOW = 0.15
+"""Speed below which a puck can be prepared, in [m]/[s]."""
+STILL = 0.06
+"""The same while the puck is being caught, in [m]/[s]."""
+APART = 0.02
+"""Gap between mallet and puck beyond which a prepared puck may be shot at, in [m]."""
+COMING = 0.4
+"""Speed towards us above which a puck is defended against, in [m]/[s]."""
+OURS = 0.0
+"""x up to which the puck is ours to play, in [m]."""
+
+
+def choose(task: str, now: str, finished: bool, committed: bool, has_shot: bool, situation: Situation) -> str:
+    """The name of the skill for this step.
+
+    Args:
+        task: "hit", "defend", "prepare", or anything else for a whole game.
+        now: Name of the skill that acted last.
+        finished: Whether it has nothing left to do.
+        committed: Whether a stroke is under way.
+        has_shot: Whether a shot is worth trying.
+        situation: Now.
+    """
+    if task in ("defend", "prepare"):
+        return task
+    if committed:
+        return "smash"
+    puck, velocity = situation.puck.position, situation.puck.velocity
+    apart = float(np.hypot(*(puck - situation.tip))) > CONTACT + APART
+    if has_shot and (apart or now != "prepare"):
+        return "smash"
+    if now == "prepare" and not finished and puck[0] < OURS:
+        return "prepare"
+    reach = puck[0] + velocity[0] / 0.5  # where damping alone would let it come to rest
+    if velocity[0] < -COMING or (puck[0] > OURS and velocity[0] < 0 and reach < OURS):
+        return "defend"
+    if -HALF_LENGTH < puck[0] < OURS:
+        slow = STILL if now == "defend" and not finished else SLOW
+        return "prepare" if situation.puck.speed < slow else "defend"
+    return "ready"

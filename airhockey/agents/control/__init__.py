@@ -1,0 +1,1 @@
+"""Low-level control: kinematics, anchored quadratic programming, joint commands, trajectories."""

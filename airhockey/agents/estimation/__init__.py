@@ -1,0 +1,1 @@
+"""Estimation of the puck: its motion, a Kalman filter, prediction."""

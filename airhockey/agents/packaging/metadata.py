@@ -1,0 +1,138 @@
+"""`submission.yaml`: who made a submission, what it plays, and what it needs."""
+
+import importlib.metadata
+import re
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import yaml
+
+from airhockey.agents.registry import EVERY_ENVIRONMENT
+from airhockey.errors import ConfigurationError, unknown
+
+METADATA = "submission.yaml"
+MAX_YAML = 1 << 20
+"""No configuration is larger, in bytes; more is an attack on the parser."""
+_NAME = re.compile(r"[a-z0-9][a-z0-9_.-]{0,63}")
+_REQUIREMENT = re.compile(r"\s*([A-Za-z0-9][A-Za-z0-9._-]*)\s*(\[[A-Za-z0-9,._ -]*\])?\s*([<>=!~][^;@]*)?")
+
+
+class Metadata(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What `submission.yaml` says.
+
+    Attributes:
+        name: Lower-case letters, digits, `-`, `_` and `.`.
+        version: The authors' own numbering.
+        authors: Names, with an address if they like.
+        packages: Requirements as pip writes them, beyond airhockey itself.
+        interpolation_order: 1, 2, 3, 4, 5, -1, or "none" for whole trajectories.
+        tasks: Names of the environments that it plays.
+    """
+
+    name: str
+    version: str = "0.1.0"
+    authors: tuple[str, ...] = ()
+    packages: tuple[str, ...] = ()
+    interpolation_order: int | str | None = 3
+    tasks: tuple[str, ...]
+
+    def check(self) -> None:
+        """Find values that have no meaning; raises `ConfigurationError`."""
+        if not _NAME.fullmatch(self.name):
+            raise ConfigurationError(
+                f"{METADATA}: the name {self.name!r} is not usable; lower-case letters, digits, '-', '_' and '.' are"
+            )
+        for task in self.tasks:
+            if task not in EVERY_ENVIRONMENT:
+                raise unknown(f"task in {METADATA}", task, EVERY_ENVIRONMENT)
+        if not self.tasks:
+            raise ConfigurationError(f"{METADATA}: tasks is empty; name some of {', '.join(EVERY_ENVIRONMENT)}")
+        for requirement in self.packages:
+            if not _REQUIREMENT.fullmatch(requirement):
+                raise ConfigurationError(
+                    f"{METADATA}: {requirement!r} is not a package requirement, as in 'scipy>=1.11'"
+                )
+        interpolation_order(self.interpolation_order)
+
+    @property
+    def missing_packages(self) -> tuple[str, ...]:
+        """Requirements of which no version at all is installed."""
+        return tuple(requirement for requirement in self.packages if not _is_installed(requirement))
+
+
+def interpolation_order(value: Any) -> int | None:
+    """An order as YAML gives it; people write None and null for whole trajectories.
+
+    Raises:
+        ConfigurationError: There is no such order.
+    """
+    if value in (None, "None", "none"):
+        return None
+    if isinstance(value, int) and not isinstance(value, bool) and value in (1, 2, 3, 4, 5, -1):
+        return value
+    raise ConfigurationError(f"unknown interpolation order {value!r}; allowed: 1, 2, 3, 4, 5, -1, none")
+
+
+def read_yaml(file: Path) -> dict[str, Any]:
+    """A file's mapping of names to values; empty for an empty file. Tags are refused: only plain values are loaded.
+
+    Raises:
+        ConfigurationError: The file is not YAML, too large, or not a mapping with text keys.
+    """
+    try:
+        if file.stat().st_size > MAX_YAML:
+            raise ConfigurationError(f"{str(file)!r} is larger than {MAX_YAML} bytes: no configuration is")
+        content = yaml.load(file.read_text(encoding="utf-8"), _Loader)
+    except (yaml.YAMLError, UnicodeDecodeError, OSError, RecursionError, ValueError) as error:
+        if isinstance(error, ConfigurationError):
+            raise
+        raise ConfigurationError(f"cannot read {str(file)!r}: {' '.join(str(error).split())}") from error
+    if content is None:
+        return {}
+    if not isinstance(content, dict) or not all(isinstance(key, str) for key in content):
+        raise ConfigurationError(f"{str(file)!r} must hold a mapping of names to values")
+    return content
+
+
+def read_metadata(folder: Path) -> Metadata | None:
+    """What a submission says of itself; None where it has no `submission.yaml`.
+
+    Args:
+        folder: The one with `agent_builder.py`, or the one around it.
+
+    Raises:
+        ConfigurationError: The file is not usable.
+    """
+    for place in (folder, folder.parent):
+        if (place / METADATA).is_file():
+            content = read_yaml(place / METADATA)
+            try:
+                metadata = msgspec.convert(content, Metadata)
+            except msgspec.ValidationError as error:
+                raise ConfigurationError(
+                    f"{METADATA}: {error}; its keys are {', '.join(Metadata.__struct_fields__)}"
+                ) from None
+            metadata.check()
+            return metadata
+    return None
+
+
+class _Loader(yaml.SafeLoader):
+    """Safe, and without aliases: ten lines of them unfold to gigabytes."""
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        if self.check_event(yaml.AliasEvent):
+            raise yaml.YAMLError("aliases (*name) are not allowed in a configuration")
+        return super().compose_node(parent, index)
+
+
+def _is_installed(requirement: str) -> bool:
+    match = _REQUIREMENT.fullmatch(requirement)
+    if match is None:
+        return False
+    try:
+        importlib.metadata.version(match[1])
+    except importlib.metadata.PackageNotFoundError:
+        return False
+    return True

@@ -1,0 +1,89 @@
+"""The players by name, and how one is built from a name or from a submission's folder."""
+
+import importlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from airhockey.agents.base import AgentBase
+from airhockey.errors import ConfigurationError, unknown
+
+PLANAR_TASKS = ("3dof-hit", "3dof-defend")
+IIWA_TASKS = ("7dof-hit", "7dof-defend", "7dof-prepare")
+EVERY_ENVIRONMENT = (*PLANAR_TASKS, *IIWA_TASKS, "tournament")
+
+
+@dataclass(frozen=True)
+class AgentEntry:
+    """A player that comes with the package.
+
+    Attributes:
+        name: What the user types.
+        summary: One line for `hockey agents`.
+        environments: Names of the environments that it can play.
+        factory: Where it is made, "module:callable"; called with (env_info, agent_id, **kwargs).
+    """
+
+    name: str
+    summary: str
+    environments: tuple[str, ...]
+    factory: str
+
+    def build(self, env_info: Mapping[str, Any], agent_id: int = 1, **kwargs: Any) -> AgentBase:
+        """Import the factory and call it."""
+        module, _, attribute = self.factory.partition(":")
+        agent = getattr(importlib.import_module(module), attribute)(env_info, agent_id=agent_id, **kwargs)
+        if not isinstance(agent, AgentBase):
+            raise ConfigurationError(f"{self.factory} did not return an agent but {type(agent).__name__}")
+        return agent
+
+
+AGENTS: dict[str, AgentEntry] = {
+    entry.name: entry
+    for entry in (
+        AgentEntry(
+            "hold",
+            "stands still where the serve finds it",
+            EVERY_ENVIRONMENT,
+            "airhockey.agents.hold:HoldAgent",
+        ),
+        AgentEntry(
+            "thesis",
+            "rule-based: hit, defend, prepare, home; switcher and state machine (parameters in YAML)",
+            EVERY_ENVIRONMENT,
+            "airhockey.agents.thesis.agent:ThesisAgent",
+        ),
+        AgentEntry(
+            "baseline",
+            "planning: predicts the puck and chooses among smash, defend, repel, prepare and ready",
+            EVERY_ENVIRONMENT,
+            "airhockey.agents.baseline.agent:BaselineAgent",
+        ),
+    )
+}
+
+
+def build_agent(name_or_path: str | Path, env_info: Mapping[str, Any], agent_id: int = 1, **kwargs: Any) -> AgentBase:
+    """Build a player.
+
+    Args:
+        name_or_path: A key of `AGENTS`, or the folder of a submission: one that holds `agent_builder.py`, or has a
+            sub-folder `air_hockey_agent/` that does.
+        env_info: Description of the environment, handed to the agent.
+        agent_id: 1 for the left robot, 2 for the right one.
+        kwargs: Handed to the agent; they win over a submission's `agent_config.yml`.
+
+    Raises:
+        ConfigurationError: Neither a known name nor a folder with a usable `agent_builder.py`.
+    """
+    name = str(name_or_path)
+    if name in AGENTS:
+        return AGENTS[name].build(env_info, agent_id, **kwargs)
+    path = Path(name_or_path).expanduser()
+    if path.exists() or "/" in name or name.startswith("."):
+        from airhockey.agents.submission import build_submission
+
+        agent: AgentBase = build_submission(path, env_info, agent_id, **kwargs)
+        return agent
+    raise unknown("agent", name, (*AGENTS, "or the path of a submission folder"))

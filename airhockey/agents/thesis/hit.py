@@ -1,0 +1,232 @@
+"""The hit task: drive the puck into the opponent's goal (thesis 4.2.1).
+
+β is the angle between the lines from the puck to the goal and from the puck to the end-effector; 180° is right behind
+it. With t_phase in steps, (4.4) and (4.5):
+
+    dβ = (θ0 + θ1 t_phase dt) correction  (adjustment),  correction / 2  (acceleration),  (θ0 + θ1 dt) correction
+    (slow-down) ds = θ2  (adjustment),  (ds_{t−1} + θ3 t_phase dt) / (radius + r_mallet)  (acceleration),  constant
+    (slow-down) correction = 180 − β  (y_puck ≤ table_width / 2),  β − 180  (y_puck > table_width / 2)
+
+Heights y of the printed case distinction are counted from the table's edge: its halves are y ≤ 0 and y > 0 here. dβ
+counts towards 180°: in the lower half β grows by it, in the upper half it shrinks.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from airhockey.agents.table import CONTACT, HALF_LENGTH, HALF_WIDTH, OPPONENT_GOAL
+from airhockey.agents.thesis.opponent import OpponentWatch
+from airhockey.agents.thesis.polar import Polar, cartesian, direction_angle, limited_step, polar, stoppable_step
+from airhockey.agents.thesis.policy import Move, View, enough_space
+from airhockey.envs.specs import MALLET, PUCK
+
+Array = NDArray[np.float64]
+
+_DECAY = PUCK.slide_damping / PUCK.mass
+"""Share of its velocity that a sliding puck loses per second, in [1/s]."""
+_EDGE = 0.012
+"""Room that is left between mallet and rim, in [m]."""
+
+
+@dataclass(frozen=True)
+class HitParameters:
+    """What can be tuned about the hit.
+
+    Attributes:
+        theta: θ0, θ1 [1/s], θ2 [m], θ3 [m]/[s].
+        wait_speed: The puck is waited for until it is slower, in [m]/[s].
+        follow: Go behind the puck while waiting for it; the thesis stands still.
+        stand_off: Least distance to the puck while adjusting, in [m].
+        run_up: Largest distance at which the acceleration may start, in [m].
+        aligned: Largest |correction| at which it starts, in [°].
+        longest_step: Of the end-effector in the adjustment, in [m].
+        fastest_step: Of the end-effector in the acceleration, in [m].
+        acceleration: With which the end-effector can stop, in [m]/[s²].
+        side_tolerance, end_tolerance: Of `enough_space`, in [m].
+        strike_time: From the start of the acceleration to the contact, in [s].
+        leaving_speed: Of the puck: at the table's centre, per x and per |y| of where it is hit, in [m]/[s], [1/s],
+            [1/s].
+        across: How much of the puck's own motion across the line is corrected for; less than 1, since a contact takes
+            time.
+        gap: Least distance from the opponent's mallet at which the puck shall pass it, in [m]; 0 does not look.
+        patience: Steps that the opponent's gap is waited for.
+        slow_down: Share of its velocity that the end-effector keeps in each step of the slow-down.
+        struck_speed: Of the puck, which shows that it was hit, in [m]/[s].
+        longest_strike: Steps after which an acceleration is given up.
+        rest_speed: Speed at which the slow-down is over, in [m]/[s].
+    """
+
+    theta: tuple[float, ...] = field(metadata={"length": 4})
+    wait_speed: float
+    follow: bool
+    stand_off: float
+    run_up: float
+    aligned: float
+    longest_step: float
+    fastest_step: float
+    acceleration: float
+    side_tolerance: float
+    end_tolerance: float
+    strike_time: float
+    leaving_speed: tuple[float, ...] = field(metadata={"length": 3})
+    across: float
+    gap: float
+    patience: float
+    slow_down: float
+    struck_speed: float
+    longest_strike: float
+    rest_speed: float
+
+
+def correction(beta: float, y_puck: float) -> float:
+    """Way of β to 180°, positive on the side that the end-effector comes from, in [°]."""
+    return 180.0 - beta if y_puck <= 0 else beta - 180.0
+
+
+def d_beta(theta: tuple[float, ...], phase: str, t_phase: int, dt: float, correction_now: float) -> float:
+    """(4.4), in [°]."""
+    if phase == "acceleration":
+        return correction_now / 2.0
+    time = t_phase * dt if phase == "adjustment" else dt
+    return (theta[0] + theta[1] * time) * correction_now
+
+
+def d_s(theta: tuple[float, ...], phase: str, t_phase: int, dt: float, before: float, radius: float) -> float:
+    """(4.5), in [m].
+
+    Args:
+        theta: θ.
+        phase: "adjustment", "acceleration" or "slow-down".
+        t_phase: Steps in this phase.
+        dt: Length of a step, in [s].
+        before: ds of the step before, in [m].
+        radius: Distance of end-effector and puck, in [m].
+    """
+    if phase == "acceleration":
+        return (before + theta[3] * t_phase * dt) / (radius + MALLET.radius)
+    return theta[2] if phase == "adjustment" else before
+
+
+class HitPolicy:
+    """Phases wait, adjustment, acceleration, slow-down."""
+
+    def __init__(self, parameters: HitParameters, opponent: OpponentWatch) -> None:
+        self._parameters, self._opponent = parameters, opponent
+        self.start()
+
+    def start(self) -> None:
+        """See `Policy.start`."""
+        self._enter("wait")
+
+    def _enter(self, phase: str) -> None:
+        self.phase, self._t_phase = phase, 0
+        self._ds = self._parameters.theta[2]
+
+    def step(self, view: View) -> Move:
+        """See `Policy.step`."""
+        self._t_phase += 1
+        if self.phase == "slow-down":
+            return self._slow_down(view)
+        if self.phase == "acceleration":
+            return self._accelerate(view)
+        p, puck = self._parameters, view.puck
+        if not enough_space(puck.position, p.side_tolerance, p.end_tolerance) or puck.position[0] > 0.0:
+            return Move(view.tip, finished=True)
+        too_fast = puck.speed > 2.0 * p.wait_speed
+        if self.phase == "wait":
+            if puck.speed < p.wait_speed:
+                self._enter("adjustment")
+            elif not p.follow:
+                return Move(view.tip, finished=too_fast)
+        move = self._adjust(view)
+        return Move(move.target, finished=too_fast)
+
+    def _aim(self, view: View) -> tuple[Array, float]:
+        """Where the puck will be when it is hit, (2,), and γ, corrected for the puck's own motion across the line."""
+        p = self._parameters
+        reach = float(np.hypot(*(view.puck.position - view.tip))) - CONTACT
+        share = min(max(reach / (p.stand_off - CONTACT), 0.0), 1.0)
+        remaining = p.strike_time * (1.0 - np.sqrt(1.0 - share))  # of a motion at constant acceleration
+        puck = view.puck.position + remaining * view.puck.velocity
+        gamma = np.radians(direction_angle(puck, OPPONENT_GOAL))
+        across = float(view.puck.velocity @ np.array([-np.sin(gamma), np.cos(gamma)]))
+        return puck, float(np.degrees(gamma - np.arcsin(np.clip(p.across * across / self._speed(puck), -0.5, 0.5))))
+
+    def _speed(self, puck: Array) -> float:
+        """Speed of the puck after a hit there, in [m]/[s]."""
+        base, by_x, by_y = self._parameters.leaving_speed
+        return max(base + by_x * float(puck[0]) + by_y * abs(float(puck[1])), 0.5)
+
+    def _adjust(self, view: View) -> Move:
+        """Behind the puck, and there until the opponent leaves a gap."""
+        p = self._parameters
+        puck, gamma = self._aim(view)
+        here, side = polar(puck, view.tip, gamma), _side(puck)
+        off = correction(here.beta, puck[1])
+        turn = d_beta(p.theta, "adjustment", self._t_phase, view.dt, off)
+        turn = float(np.clip(turn, -abs(off), abs(off)))
+        self._ds = d_s(p.theta, "adjustment", self._t_phase, view.dt, self._ds, here.radius)
+        stand_off = min(p.stand_off, room_behind(puck, gamma))
+        radius = max(here.radius - self._ds, stand_off)
+        target = cartesian(puck, Polar(here.beta + side * turn, radius), gamma)
+        run_up = stand_off + p.run_up - p.stand_off
+        ready = self.phase == "adjustment" and abs(off) < p.aligned and here.radius < run_up
+        if ready and (self._gap(view) or self._t_phase > p.patience):
+            self._enter("acceleration")
+        end = cartesian(puck, Polar(180.0, stand_off), gamma)
+        longest = min(p.longest_step, stoppable_step(view.tip, end, p.acceleration, view.dt))
+        return Move(limited_step(view.tip, target, longest))
+
+    def _gap(self, view: View) -> bool:
+        """Whether the opponent's mallet will be out of the way while the puck goes by."""
+        p, puck = self._parameters, view.puck.position
+        mallet = self._opponent.predict(0.0)
+        if p.gap <= 0.0 or mallet is None:
+            return True
+        if not self._opponent.ready:
+            return False
+        way = (OPPONENT_GOAL - puck) / np.hypot(*(OPPONENT_GOAL - puck))
+        across, speed = np.array([-way[1], way[0]]), self._speed(puck)
+        passing = float(way @ (mallet - puck)) + np.array([-1.5, -0.75, 0.0, 0.75]) * CONTACT
+        times = p.strike_time - np.log(1.0 - np.clip(_DECAY * passing / speed, 0.0, 0.95)) / _DECAY
+        return all(abs(across @ (self._opponent.at(float(time)) - puck)) > p.gap for time in times)
+
+    def _accelerate(self, view: View) -> Move:
+        """Through the puck, along the line to the goal."""
+        p = self._parameters
+        puck, gamma = self._aim(view)
+        here = polar(puck, view.tip, gamma)
+        if abs(here.beta - 180.0) > 60.0 or view.puck.velocity[0] > p.struck_speed or self._t_phase > p.longest_strike:
+            self._enter("slow-down")
+            return self._slow_down(view)
+        turn = d_beta(p.theta, "acceleration", self._t_phase, view.dt, correction(here.beta, puck[1]))
+        self._ds = d_s(p.theta, "acceleration", self._t_phase, view.dt, self._ds, here.radius)
+        self._ds = min(self._ds, p.fastest_step)
+        target = cartesian(puck, Polar(here.beta + _side(puck) * turn, here.radius - self._ds), gamma)
+        return Move(target)
+
+    def _slow_down(self, view: View) -> Move:
+        """Brake on the way, on the curve that dβ gives."""
+        p = self._parameters
+        puck, gamma = self._aim(view)
+        off = correction(polar(puck, view.tip, gamma).beta, puck[1])
+        turn = np.radians(_side(puck) * d_beta(p.theta, "slow-down", self._t_phase, view.dt, off))
+        rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+        velocity = p.slow_down * rotation @ view.tip_velocity
+        target = view.tip + 0.5 * view.dt * (velocity + view.tip_velocity)
+        return Move(target, bool(np.hypot(*view.tip_velocity) < p.rest_speed), velocity)
+
+
+def room_behind(puck: Array, gamma: float) -> float:
+    """Largest distance at which the mallet can stand behind the puck on the line to the goal, in [m]."""
+    direction = np.array([np.cos(np.radians(gamma)), np.sin(np.radians(gamma))])
+    edge = np.array([HALF_LENGTH, HALF_WIDTH]) - MALLET.radius - _EDGE
+    reach = (edge + np.sign(direction) * puck) / np.maximum(np.abs(direction), 1e-9)
+    return max(float(reach.min()), CONTACT)
+
+
+def _side(puck: Array) -> float:
+    """1 in the lower half, where dβ enlarges β; −1 in the upper half."""
+    return 1.0 if puck[1] <= 0 else -1.0

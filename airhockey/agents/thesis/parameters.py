@@ -1,0 +1,37 @@
+"""All parameters of the rule-based player: `thesis.yaml` and `tuned.yaml` beside this module."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from airhockey.agents.parameters import load_parameters
+from airhockey.agents.thesis.defend import DefendParameters
+from airhockey.agents.thesis.hit import HitParameters
+from airhockey.agents.thesis.home import HomeParameters
+from airhockey.agents.thesis.prepare import PrepareParameters
+from airhockey.agents.thesis.switcher import SwitcherParameters
+
+
+@dataclass(frozen=True)
+class ThesisParameters:
+    """θ and thresholds of every task.
+
+    Attributes:
+        hit, defend, prepare, home, switcher: Their own.
+        opponent_rate: Angular rate at which an opponent that repeats itself is expected to, in [rad]/[s].
+    """
+
+    hit: HitParameters
+    defend: DefendParameters
+    prepare: PrepareParameters
+    home: HomeParameters
+    switcher: SwitcherParameters
+    opponent_rate: float
+
+
+def thesis_parameters(source: str | Path = "tuned") -> ThesisParameters:
+    """The package's `thesis` or `tuned`, or a file of the user's.
+
+    Raises:
+        ConfigurationError: No such file, or one that does not fit.
+    """
+    return load_parameters(ThesisParameters, source, Path(__file__).parent)

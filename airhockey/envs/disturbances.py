@@ -3,6 +3,7 @@
 A profile is a YAML file: one of the package's (`ideal`, `server`, `harsh`) or a user's. Judging never reads a disturbed value.
 """
 
+import os
 import pathlib
 from functools import cache
 from importlib import resources
@@ -14,8 +15,11 @@ from msgspec import Meta
 
 from airhockey.errors import ConfigurationError, unknown
 
-Deviation = Annotated[float, Meta(ge=0.0)]
-Factors = Annotated[tuple[Annotated[float, Meta(gt=0.0)], Annotated[float, Meta(gt=0.0)]], Meta()]
+# The upper bounds are far above anything sensible: they keep out infinity, which YAML can write (.inf).
+Deviation = Annotated[float, Meta(ge=0.0, le=1e6)]
+Factor = Annotated[float, Meta(gt=0.0, le=1e6)]
+Factors = tuple[Factor, Factor]
+Steps = Annotated[int, Meta(ge=1, le=1_000_000)]
 
 
 class PuckNoise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -46,7 +50,7 @@ class TrackLoss(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Losses of the puck's track: chance per step that one begins, its length in [steps] and what it shows."""
 
     probability: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.0
-    length: tuple[Annotated[int, Meta(ge=1)], Annotated[int, Meta(ge=1)]] = (1, 1)
+    length: tuple[Steps, Steps] = (1, 1)
     shows: Literal["hold", "zero_velocity"] = "hold"
 
 
@@ -114,13 +118,16 @@ def load_disturbances(profile: "str | pathlib.Path | Disturbances") -> Disturban
         return profile
     if isinstance(profile, str) and profile in available():
         return _load_from_package(profile)
+    if not isinstance(profile, (str, os.PathLike)):
+        raise unknown("disturbance profile (or path of a YAML file)", profile, available())
     path = pathlib.Path(profile)
-    if not path.is_file():
-        if path.suffix in (".yaml", ".yml"):
-            raise ConfigurationError(f"no disturbance profile at {str(path)!r}: there is no such file")
-        raise unknown("disturbance profile (or path of a YAML file)", str(profile), available())
     try:
-        return _parse(path.read_text(encoding="utf-8"), str(path))
+        if path.is_file():
+            return _parse(path.read_text(encoding="utf-8"), str(path))
+        if path.suffix in (".yaml", ".yml"):
+            trouble = "that is not a file" if path.exists() else "there is no such file"
+            raise ConfigurationError(f"no disturbance profile at {str(path)!r}: {trouble}")
+        raise unknown("disturbance profile (or path of a YAML file)", str(profile), available())
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigurationError(f"cannot read the disturbance profile {str(path)!r}: {error}") from error
 
@@ -134,7 +141,7 @@ def _load_from_package(name: str) -> Disturbances:
 def _parse(text: str, source: str) -> Disturbances:
     try:
         return msgspec.convert(yaml.safe_load(text), Disturbances)
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, RecursionError) as error:
         raise ConfigurationError(f"{source!r} is not valid YAML: {' '.join(str(error).split())}") from error
     except msgspec.ValidationError as error:
         raise ConfigurationError(

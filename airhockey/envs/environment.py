@@ -19,7 +19,7 @@ from airhockey.envs.plant_mismatch import PlantMismatch
 from airhockey.envs.simulation import Simulation
 from airhockey.envs.specs import CONTROL_PERIOD, SUBSTEPS, TABLE
 from airhockey.envs.starts import draw_start
-from airhockey.errors import ActionError
+from airhockey.errors import ActionError, ConfigurationError
 
 Array = NDArray[np.float64]
 Seed = int | np.random.SeedSequence | None
@@ -75,8 +75,11 @@ class Environment:
         self.n_agents = rules.robots
         self.n_players = 2 if rules.kind == "game" else 1
         self.horizon = self.edition.horizon.game if rules.kind == "game" else self.edition.horizon.task
-        orders = interpolation_order if isinstance(interpolation_order, tuple) else (interpolation_order,) * 2
-        self.formats = [ActionFormat(order, robot.n_joints) for order in orders[: self.n_players]]
+        given = interpolation_order
+        orders = given if isinstance(given, tuple) else (given,) * self.n_players
+        if len(orders) != self.n_players:
+            raise ConfigurationError(f"{name} has {self.n_players} player(s), but got interpolation orders {orders}")
+        self.formats = [ActionFormat(order, robot.n_joints) for order in orders]
         self._kind, self._start = _KINDS[rules.kind], rules.start
         codes = [form.code for form in self.formats] + [OPPONENT_ORDER] * (self.n_agents - self.n_players)
         self.simulation = Simulation(
@@ -100,7 +103,7 @@ class Environment:
         self._mismatch = PlantMismatch(self.simulation.model, robot, self.n_agents)
         self._perceptions = [Perception(self.disturbances, robot.n_joints) for _ in range(self.n_players)]
         self._seed_streams(np.random.SeedSequence())
-        self.step_count = 0
+        self.reset()
 
     @property
     def base_observation(self) -> Array:
@@ -117,6 +120,16 @@ class Environment:
         """Constraint values of the latest step, violated where positive; shape (K,), in the tournament (2, K)."""
         values = self.simulation.readings.constraints
         return values if self.n_players == 2 else values[0]
+
+    @property
+    def score(self) -> list[int]:
+        """Points of player 1 and player 2 in a game."""
+        return [int(points) for points in self._game.score]
+
+    @property
+    def faults(self) -> list[int]:
+        """Faults of player 1 and player 2 in a game."""
+        return [int(count) for count in self._game.faults]
 
     def reset(
         self, seed: Seed = None, state: Array | None = None, start_random: np.random.RandomState | None = None
@@ -146,7 +159,7 @@ class Environment:
             self._restore(np.asarray(state, dtype=np.float64))
         for perception, random in zip(self._perceptions, self._perception_randoms, strict=True):
             perception.reset(random)
-        self.step_count = 0
+        self.step_count, self.verdict = 0, referee.GOING_ON
         return self._observe()
 
     def step(self, action: Any) -> tuple[Array, float, bool, dict[str, Any]]:
@@ -245,8 +258,7 @@ class Environment:
         flat = self.simulation.flat
         by_name = [{name: flat[part] for name, part in parts.items()} for parts in self._constraints]
         if self.n_players == 2:
-            score, faults = self._game.score.tolist(), self._game.faults.tolist()
-            return {"constraints_value": by_name, "jerk": flat[self._jerk], "score": score, "faults": faults}
+            return {"constraints_value": by_name, "jerk": flat[self._jerk], "score": self.score, "faults": self.faults}
         return {"constraints_value": by_name[0], "jerk": flat[self._jerk], "success": int(verdict >= SUCCESS)}
 
 

@@ -47,7 +47,8 @@ class Perception:
         """What the player sees when `true` is the case. Shape as `true`, always a fresh array."""
         size = true.size
         seen = true + self._bias[:size] + self._deviation[:size] * self._random.standard_normal(size)
-        seen[2] = (seen[2] + math.pi) % (2.0 * math.pi) - math.pi
+        if abs(seen[2]) > math.pi:  # only then: player 2's yaw may be +pi, and wrapping costs the last bit
+            seen[2] = (seen[2] + math.pi) % (2.0 * math.pi) - math.pi
         self._lose_track(seen)
         self._seen.append(seen)
         return self._seen[0].copy()

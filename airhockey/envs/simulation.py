@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from airhockey.envs import scene
 from airhockey.envs.kernel.arm import Arm, arm_from_model
-from airhockey.envs.kernel.control_step import BAD_ACTION, BAD_TORQUE, Task, control_step
+from airhockey.envs.kernel.control_step import BAD_ACTION, Task, control_step
 from airhockey.envs.kernel.controller import Controller, filter_velocity
 from airhockey.envs.kernel.engine import last_warnings
 from airhockey.envs.kernel.kinematics import WorkSpace, link_rotations, work_space
@@ -143,23 +143,27 @@ class Simulation:
             ActionError: The action is not finite, or so large that the torque is not.
             SimulationError: The engine warned.
         """
-        self.flat = flat = np.empty(self._size)
-        verdict: int = control_step(self._memory, *self._arrays, action, noise, flat)
+        before, self.flat = self.flat, np.empty(self._size)
+        verdict: int = control_step(self._memory, *self._arrays, action, noise, self.flat)
+        if verdict == BAD_ACTION:
+            self.flat = before
         if verdict < 0:
             self._complain(verdict, action, step)
         return verdict
 
     def _complain(self, code: int, action: Array, step: int) -> None:
-        self.flat = np.full(self._size, np.nan)
         if code == BAD_ACTION:
             raise ActionError(f"step {step}: the action holds values that are not finite; all must be numbers")
-        if code == BAD_TORQUE:
-            raise ActionError(
-                f"step {step}: the action leads to a motor torque that is not a finite number "
-                f"(largest entry {np.abs(action).max():.3g}); send positions in [rad] and velocities in [rad/s]"
-            )
+        self.flat = np.full(self._size, np.nan)
         names = ", ".join(_warning_names(self.data.warning.number))
-        raise SimulationError(f"step {step}: MuJoCo warned ({names}): {last_warnings() or 'no message'}")
+        if names:  # before the torque, which is not finite either once the state is not
+            raise SimulationError(f"step {step}: MuJoCo warned ({names}): {last_warnings() or 'no message'}")
+        if not (np.isfinite(self.data.qpos).all() and np.isfinite(self.data.qvel).all()):
+            raise SimulationError(f"step {step}: the simulation diverged: positions or velocities are not finite")
+        raise ActionError(
+            f"step {step}: the action leads to a set-point or motor torque that is not a finite number "
+            f"(largest entry {np.abs(action).max():.3g}); send positions in [rad] and velocities in [rad/s]"
+        )
 
     def _geometry(self) -> Geometry:
         model, robot = self.model, self.robot

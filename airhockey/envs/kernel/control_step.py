@@ -24,7 +24,8 @@ Array = NDArray[np.float64]
 SUCCESS = 256
 """Added to the verdict when the episode would count as a success if it ended here."""
 BAD_ACTION, BAD_TORQUE, ENGINE_WARNED = -1, -2, -3
-"""In place of a verdict: the action is not finite (nothing was simulated); it led to a torque that is not; MuJoCo warned."""
+"""In place of a verdict: the action is not finite (nothing was simulated); it led to a set-point or a torque that is not;
+MuJoCo warned."""
 
 
 class Task(NamedTuple):
@@ -71,6 +72,8 @@ def control_step(
             return BAD_ACTION
     for r in range(robots):
         interpolate(m.orders[r], action[r], controller.command[r], controller.set_points[r], readings.jerk[r])
+        if not _all_finite(controller.command[r]):  # or the next action, innocent, would be blamed
+            return BAD_TORQUE
     if not _simulate(plant, arm, controller, noise):
         return BAD_TORQUE
     for k in range(warnings.shape[0]):

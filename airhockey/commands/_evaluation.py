@@ -12,12 +12,14 @@ import click
 import msgspec
 
 from airhockey.agents import AGENTS
+from airhockey.commands._isolation import isolation_of
 from airhockey.commands._progress import progress
 from airhockey.commands._tables import print_result
 from airhockey.envs.disturbances import available
 from airhockey.envs.editions import edition
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator import Options, RunResult, TaskResult, begin, engine_for, evaluate, take_up
+from airhockey.evaluator import Options, RunResult, TaskResult, begin, evaluate, take_up
+from airhockey.evaluator.cluster import engine_of
 from airhockey.evaluator.official import write_official
 from airhockey.evaluator.records import Order
 from airhockey.evaluator.report import task_results
@@ -38,12 +40,13 @@ def run(given: Mapping[str, Any], typed: set[str]) -> int:
     Returns:
         The exit status.
     """
+    engine = engine_of(given["cluster"], given["jobs"] or cpus())
     folder = _open_run(given, typed)
     options = folder.manifest.options
     played: TaskResult | RunResult | None = None
     with contextlib.suppress(KeyboardInterrupt), stdout_for_the_result():
         with progress(options, folder.records, quiet=given["quiet"] or given["as_json"]) as on_episode:
-            played = evaluate(folder, engine_for(given["jobs"] or _cpus()), on_episode)
+            played = evaluate(folder, engine, on_episode)
         if given["official_dataset"]:
             write_official(folder.path, played)
     if played is None:
@@ -71,14 +74,17 @@ def _open_run(given: Mapping[str, Any], typed: set[str]) -> RunFolder:
 
 
 def _options(given: Mapping[str, Any]) -> Options:
+    agent = from_anywhere(given["agent"], AGENTS)
     return Options(
         environments=_environments(given),
-        agent=from_anywhere(given["agent"], AGENTS),
+        agent=agent,
         episodes=given["episodes"],
         seed=given["seed"],
         disturbances=from_anywhere(given["disturbances"], available()),
         interpolation_order=_order(given["interpolation_order"]),
         clock=given["clock"],
+        isolate=isolation_of(agent, given["isolate"]),
+        patience=given["patience"],
     )
 
 
@@ -120,7 +126,7 @@ def _new_folder(given: Mapping[str, Any], options: Options) -> Path:
     return RUNS / (name if number == 1 else f"{name}-{number}")
 
 
-def _cpus() -> int:
+def cpus() -> int:
     """How many CPUs this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 

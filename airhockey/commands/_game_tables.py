@@ -10,18 +10,25 @@ from airhockey.evaluator.games.match import GameResult, MatchManifest, MatchResu
 from airhockey.evaluator.games.records import Event
 from airhockey.evaluator.games.standings import Standings
 
+_WIDTH = 130
 _FEW = 8  # events of a game that are shown when several games were played
+
+
+def output() -> Console:
+    """The standard output; what no terminal bounds has room for a table."""
+    console = Console(highlight=False)
+    return console if console.is_terminal else Console(highlight=False, width=_WIDTH)
 
 
 def print_match(result: MatchResult, manifest: MatchManifest, path: Path) -> None:
     """Print a table per game, its events, and the match as a whole."""
-    console = Console(highlight=False)
+    console = output()
     for number, game in enumerate(result.games, start=1):
         console.print(_game_table(result, game, number))
         for side, failure in zip((result.home, result.away), game.failures, strict=True):
             if failure is not None:
-                console.print(f"{side} failed: {failure}", markup=False)
-        _print_events(console, game.events, len(result.games) == 1)
+                console.print(f"{side} failed: {failure}", markup=False, soft_wrap=True)
+        _print_events(console, result, game.events, len(result.games) == 1)
     console.print(f"{result.home}: {result.wins} won, {result.draws} drawn, {result.losses} lost", markup=False)
     versions = ", ".join(f"{name} {version}" for name, version in manifest.versions.items())
     console.print(f"seed {manifest.options.seed}, {versions}", soft_wrap=True)
@@ -56,15 +63,18 @@ def _outcome(result: MatchResult, game: GameResult) -> str:
     return "draw" if game.winner == "draw" else f"{result.home if game.winner == 'home' else result.away} wins"
 
 
-def _print_events(console: Console, events: tuple[Event, ...], everything: bool) -> None:
+def _print_events(console: Console, result: MatchResult, events: tuple[Event, ...], everything: bool) -> None:
+    names = {"home": f"{result.home} (home)", "away": f"{result.away} (away)"}
     told = [event for event in events if event.what not in ("serve", "held")]
     for event in told if everything else told[:_FEW]:
         minutes, seconds = divmod(event.step * 0.02, 60)
-        who = f" {event.who}" if event.who else ""
+        who = f"  {names[event.who]}" if event.who else ""
         score = f"  {event.score[0]}:{event.score[1]}" if event.score else ""
         why = f"  {event.why}" if event.why else ""
         console.print(
-            f"{int(minutes):2d}:{seconds:05.2f}  step {event.step:5d}  {event.what}{who}{score}{why}", markup=False
+            f"{int(minutes):2d}:{seconds:05.2f}  step {event.step:5d}  {event.what:9}{who}{score}{why}",
+            markup=False,
+            soft_wrap=True,
         )
     if not everything and len(told) > _FEW:
         console.print(f"… and {len(told) - _FEW} more events, in the journal")

@@ -1,13 +1,12 @@
 """`hockey evaluate`: an agent on the challenge's tasks, judged by the challenge's rules."""
 
-import os
 from typing import Any
 
 import rich_click as click
-from click.core import ParameterSource
 
 from airhockey.commands import HELP_PAGE
-from airhockey.evaluator.workers import ONE_THREAD
+from airhockey.commands._isolation import isolation_options
+from airhockey.commands._options import cluster_option, typed_options
 
 
 @click.command()
@@ -23,14 +22,15 @@ from airhockey.evaluator.workers import ONE_THREAD
 @click.option("--env", metavar="NAME", help="Task and robot in one name, as in 7dof-prepare.")
 @click.option(
     "--agent",
-    metavar="NAME|PATH",
+    metavar="NAME|PATH|tcp://…",
     default="thesis",
     show_default=True,
-    help="One of `hockey agents`, or the folder of a submission.",
+    help="One of `hockey agents`, the folder or archive of a submission, or tcp://HOST:PORT.",
 )
 @click.option("--episodes", type=click.IntRange(min=1), default=1000, show_default=True, help="Episodes of each task.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the whole run.")
 @click.option("--jobs", type=click.IntRange(min=1), help="Processes that play.  [default: one per CPU]")
+@cluster_option
 @click.option(
     "--disturbances",
     metavar="NAME|PATH",
@@ -43,6 +43,7 @@ from airhockey.evaluator.workers import ONE_THREAD
     type=click.Choice(["1", "2", "3", "4", "5", "-1", "none"]),
     help="How actions become set-points.  [default: what the agent wants]",
 )
+@isolation_options
 @click.option("--out", metavar="FOLDER", help="Run folder.  [default: a new one under runs/]")
 @click.option("--resume", is_flag=True, help="Continue the run in --out; its options need not be repeated.")
 @click.option(
@@ -70,12 +71,11 @@ def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
     hockey evaluate --env 3dof-hit --agent submissions/my_agent --episodes 100 --jobs 1
     hockey evaluate --resume --out runs/7dof-prepare-thesis-s0
     """
-    typed = {name for name in given if ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE}
+    typed = typed_options(ctx, given)
     if given["env"] is not None and typed & {"task", "robot"}:
         raise click.UsageError("--env names task and robot already: leave out --task and --robot")
     if given["resume"] and given["out"] is None:
         raise click.UsageError("--resume needs the run's folder: --out FOLDER")
-    os.environ.update(ONE_THREAD)  # before NumPy is imported: with --jobs 1 the episodes are played right here
     from airhockey.commands._evaluation import run
 
     ctx.exit(run(given, typed))

@@ -1,11 +1,10 @@
 """`hockey tournament`: everybody against everybody, at home and away."""
 
-import os
 from typing import Any
 
 import rich_click as click
 
-from airhockey.commands._options import game_options
+from airhockey.commands._options import game_options, typed_options
 
 
 @click.command()
@@ -14,23 +13,30 @@ from airhockey.commands._options import game_options
 @click.option("--phases", type=click.IntRange(1, 2), default=1, show_default=True, help="Double round robins.")
 @click.option("--replace", metavar="NAME=AGENT", multiple=True, help="Another agent for an entry in phase 2.")
 @click.option("--show", is_flag=True, help="Show the standings of the tournament in --out without playing.")
+@click.option("--csv", "as_csv", is_flag=True, help="Print the standings as comma-separated values, and nothing else.")
 @game_options
 @click.pass_context
 def tournament(ctx: click.RichContext, /, **given: Any) -> None:
     """Play a tournament: a double round robin of whole games, with standings and ratings after each.
 
-    3 points for a win, 1 for a draw; ties are broken by goal difference, goals, head to head, penalty. A tournament that
-    was stopped goes on with --resume; entries named then are added to it, and only the missing games are played.
+    3 points for a win, 1 for a draw; ties are broken by goal difference, goals, points of the games among those tied,
+    fewer penalty points, name. With --resume a tournament that was stopped goes on, and one that is finished can be
+    extended: by entries, or by --phases 2 with or without --replace. Only the missing games are played. Exit status 3: an
+    entry failed games, and so lost them.
 
     \b
     hockey tournament thesis baseline hold --steps 5000
-    hockey tournament alpha=submissions/alpha beta=submissions/beta --phases 2 --replace beta=submissions/beta2
+    hockey tournament alpha=submissions/alpha beta=submissions/beta
+    hockey tournament --resume --out runs/tournament-s0 --phases 2 --replace beta=submissions/beta2
     hockey tournament --resume --out runs/tournament-s0 thesis
     hockey tournament --show --out runs/tournament-s0
     """
-    from airhockey.evaluator.workers import ONE_THREAD
-
-    os.environ.update(ONE_THREAD)
+    typed = typed_options(ctx, given)
+    for flag in ("resume", "show"):
+        if given[flag] and given["out"] is None:
+            raise click.UsageError(f"--{flag} needs the tournament's folder: --out FOLDER")
+    if given["as_json"] and given["as_csv"]:
+        raise click.UsageError("--json or --csv, not both")
     from airhockey.commands._tournament import run
 
-    ctx.exit(run(given))
+    ctx.exit(run(given, typed))

@@ -5,12 +5,13 @@ from pathlib import Path
 
 from airhockey import envs
 from airhockey.agents import AGENTS
-from airhockey.agents.submission import submission_config
+from airhockey.agents.submission import is_submission, submission_config
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.envs.editions import Edition, edition
 from airhockey.errors import ConfigurationError, unknown
 from airhockey.evaluator.episode import CLOCKS
 from airhockey.evaluator.games.records import VARIANTS, GameOptions
+from airhockey.evaluator.isolation.modes import REMOTE, choose, host_and_port
 from airhockey.evaluator.records import Options
 
 ORDERS = (1, 2, 3, 4, 5, -1, "none", "agent")
@@ -25,8 +26,7 @@ def check_options(options: Options) -> None:
     rules = edition(options.edition)
     if options.episodes < 1:
         raise ConfigurationError(f"the number of episodes must be positive, not {options.episodes}")
-    if options.seed < 0:
-        raise ConfigurationError(f"the seed must not be negative, as {options.seed} is")
+    check_seed(options.seed)
     if options.interpolation_order not in ORDERS:
         raise unknown("interpolation order", options.interpolation_order, map(str, ORDERS))
     if options.clock not in CLOCKS:
@@ -37,6 +37,15 @@ def check_options(options: Options) -> None:
         _check_environment(name, rules)
     load_disturbances(options.disturbances)
     check_agent(options.agent, options.environments)
+    choose(options.agent, options.isolate)
+    if options.patience <= 0.0:
+        raise ConfigurationError(f"the patience must be positive, not {options.patience:g} s")
+
+
+def check_seed(seed: int) -> None:
+    """Seeds are natural numbers; raises `ConfigurationError` where one is not."""
+    if seed < 0:
+        raise ConfigurationError(f"the seed must not be negative, as {seed} is")
 
 
 def check_versions(began_with: Mapping[str, str], path: Path) -> None:
@@ -80,8 +89,11 @@ def check_agent(agent: str, environments: tuple[str, ...]) -> None:
     Raises:
         ConfigurationError: It does not, or it is not.
     """
+    if agent.startswith(REMOTE):
+        host_and_port(agent)
+        return
     if agent not in AGENTS:
-        if Path(agent).exists() or "/" in agent or agent.startswith("."):
+        if is_submission(agent):
             submission_config(Path(agent))
             return
         raise unknown("agent (or path of a submission's folder)", agent, AGENTS)

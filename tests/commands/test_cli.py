@@ -10,9 +10,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from command_line import Hockey
 
 from airhockey import __version__
-from airhockey.cli import main
 
 EVALUATE = [sys.executable, "-m", "airhockey.cli", "evaluate"]
 KEYS = [
@@ -28,22 +28,6 @@ KEYS = [
     "computation_time",
     "agent_errors",
 ]
-Hockey = Callable[[str], tuple[int, str, str]]
-
-
-@pytest.fixture
-def hockey(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Hockey:
-    """Runs a command line in an empty folder; gives status, standard output and standard error."""
-    (tmp_path / "here").mkdir()
-    monkeypatch.chdir(tmp_path / "here")
-
-    def run(line: str) -> tuple[int, str, str]:
-        with pytest.raises(SystemExit) as end:
-            main(line.split())
-        out, err = capfd.readouterr()
-        return int(end.value.code or 0), out, err
-
-    return run
 
 
 @pytest.mark.parametrize(
@@ -70,6 +54,7 @@ def hockey(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.Captur
         ("evaluate --seed -1", "--seed"),
         ("evaluate --jobs 0", "--jobs"),
         ("evaluate --clock sun", "sun"),
+        ("evaluate --agent hold --cluster local:0", "local:"),
         ("evaluate --interpolation-order 7", "'7'"),
         ("evaluate --agent hold --out /proc/nowhere/run", "/proc/nowhere/run"),
         ("evaluate --agent hold --out {tmp}/broken.yaml/run", "broken.yaml"),
@@ -116,6 +101,14 @@ def test_one_task_as_json(hockey: Hockey) -> None:
     assert result["agent_errors"] == 0
     assert "runs/7dof-hit-hold-server-s5" in err
     assert json.loads(Path("runs/7dof-hit-hold-server-s5/result.json").read_text()) == result
+
+
+def test_a_cluster_gives_what_this_machine_gives(hockey: Hockey) -> None:
+    """But for the time that it took."""
+    run = "evaluate --env 3dof-defend --agent hold --episodes 20 --disturbances server --json --quiet"
+    here, there = (json.loads(hockey(f"{run} {where}")[1]) for where in ("--jobs 1", "--cluster local:1"))
+    assert here.pop("computation_time").keys() == there.pop("computation_time").keys()
+    assert here == there
 
 
 def test_every_task_of_a_robot(hockey: Hockey) -> None:

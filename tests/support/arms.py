@@ -46,10 +46,8 @@ def standing(env: envs.Environment, order: int | None = 3) -> Any:
     """The action, or the pair of them, that keeps the robots where they start."""
     start = np.array(env.simulation.robot.start)
     rows = np.stack([start, np.zeros_like(start), np.zeros_like(start)])
-    if order is None:
-        action = np.tile(rows, (20, 1, 1))
-    else:
-        action = rows[0] if order in (1, 2) else rows[: 3 if order == 5 else 2]
+    rest = {None: np.tile(rows, (20, 1, 1)), 1: start, 2: start, 5: rows}
+    action = rest.get(order, rows[:2])
     return action if env.n_players == 1 else (action, action.copy())
 
 

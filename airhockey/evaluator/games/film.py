@@ -19,7 +19,7 @@ class Film:
     """
 
     def __init__(self, steps: int, width: int) -> None:
-        self._rows = np.empty((steps, width), dtype=np.float32)
+        self._rows = np.full((steps, width), np.nan, dtype=np.float32)
         self._filled = 0
 
     @property

@@ -3,23 +3,27 @@
     match.json or tournament.json     the manifest
     journal.jsonl                     a line per finished game, written to the disk before the next one is taken
     films/KEY.h5                      where puck and joints were
-    result.json                       once everything is played
+    live/KEY                          a game in progress
+    result.json                       of a match, once everything is played
+    standings.json, standings.csv     of a tournament, after every game
 
 A game is finished when its line stands in the journal; its film is written before. A kill costs the games under way.
 """
 
 import fcntl
 import os
-from collections.abc import Sequence
+import shutil
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Generic, Self, TypeVar
+from typing import Any, Generic, Self, TypeVar
 
 import msgspec
 
+from airhockey.envs.disturbances import Disturbances, load_disturbances
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.games.film import write_film
 from airhockey.evaluator.games.player import Game
-from airhockey.evaluator.games.records import GameRecord
+from airhockey.evaluator.games.records import GameRecord, file_name
 from airhockey.evaluator.store import disk_errors, replace_file
 
 Manifest = TypeVar("Manifest", bound=msgspec.Struct)
@@ -35,18 +39,18 @@ class GameFolder(Generic[Manifest]):
         records: Of the finished games, in the order in which they finished.
     """
 
-    def __init__(self, path: Path, name: str, manifest: Manifest) -> None:
+    def __init__(self, path: Path, name: str, kind: type[Manifest]) -> None:
         """Use `create` or `open`."""
-        self.path, self.manifest, self._name = path, manifest, name
-        self._lock = (path / name).open()
+        self.path, self._name = path, name
+        self._lock = _lock(path)
         try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            self._lock.close()
-            raise ConfigurationError(f"another process is at work on the games in {str(path)!r}") from None
-        self.records = read_games(path)
-        with disk_errors(path):  # a line that a kill cut short goes away
-            replace_file(path / "journal.jsonl", _JSON.encode_lines(self.records))
+            self.manifest = read_game_manifest(path, name, kind)
+            self.records = read_games(path)
+            with disk_errors(path):
+                self._tidy()
+        except BaseException:
+            os.close(self._lock)
+            raise
 
     @classmethod
     def create(cls, path: Path, name: str, manifest: Manifest) -> Self:
@@ -64,18 +68,33 @@ class GameFolder(Generic[Manifest]):
             write_manifest(path / name, manifest)
         except OSError as error:
             raise ConfigurationError(f"cannot write games to {str(path)!r}: {error.strerror}") from error
-        return cls(path, name, manifest)
+        return cls(path, name, type(manifest))
 
     @classmethod
     def open(cls, path: Path, name: str, kind: type[Manifest]) -> Self:
-        """Take up what was begun before; raises `ConfigurationError` if there is nothing."""
-        return cls(path, name, read_game_manifest(path, name, kind))
+        """Take up what was begun before.
+
+        Raises:
+            ConfigurationError: There is nothing, or another process is at work on it.
+        """
+        read_game_manifest(path, name, kind)
+        return cls(path, name, kind)
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._lock.close()
+        self.close()
+
+    def close(self) -> None:
+        """Let others have it."""
+        shutil.rmtree(self.live, ignore_errors=True)
+        os.close(self._lock)
+
+    @property
+    def live(self) -> Path:
+        """Where games in progress are shown."""
+        return self.path / "live"
 
     @property
     def done(self) -> set[str]:
@@ -95,17 +114,37 @@ class GameFolder(Generic[Manifest]):
             if game.film.size:
                 films = self.path / "films"
                 films.mkdir(exist_ok=True)
-                write_film(films / f"{game.record.job.key.replace('/', '_')}.h5", game.film, line)
+                write_film(films / f"{file_name(game.record.job.key)}.h5", game.film, line)
             with (self.path / "journal.jsonl").open("ab") as journal:
                 journal.write(line)
                 journal.flush()
                 os.fsync(journal.fileno())
         self.records.append(game.record)
 
+    def _tidy(self) -> None:
+        """What a kill left half done goes away: a line that was cut short, games that were being played."""
+        whole = _JSON.encode_lines(self.records)
+        journal = self.path / "journal.jsonl"
+        if not journal.exists() or journal.read_bytes() != whole:
+            replace_file(journal, whole)
+        shutil.rmtree(self.live, ignore_errors=True)
+        self.live.mkdir()
+
     def keep_result(self, result: msgspec.Struct) -> None:
         """Leave the result beside the games."""
         with disk_errors(self.path):
             write_manifest(self.path / "result.json", result)
+
+
+def _lock(path: Path) -> int:
+    """Lock a folder itself, since the files in it are replaced; released when the descriptor is closed."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(descriptor)
+        raise ConfigurationError(f"another process is at work on the games in {str(path)!r}") from None
+    return descriptor
 
 
 def write_manifest(path: Path, content: msgspec.Struct) -> None:
@@ -138,6 +177,25 @@ def read_games(path: Path) -> list[GameRecord]:
             continue
         records[record.job.key] = record
     return list(records.values())
+
+
+def check_repeated(path: Path, asked: Mapping[str, Any], began: msgspec.Struct, profile: Disturbances) -> None:
+    """Options that are given again for what goes on must be those that it began with.
+
+    Args:
+        path: Of the folder, for the message.
+        asked: Options that the user repeated, by name.
+        began: The options that it began with; those of a game are in its field `game`.
+        profile: The disturbances that it began with; a file of them may have changed since.
+
+    Raises:
+        ConfigurationError: One of them is another.
+    """
+    for name, value in asked.items():
+        began_with = getattr(began, name) if hasattr(began, name) else getattr(began.game, name)  # type: ignore[attr-defined]
+        same = load_disturbances(value) == profile if name == "disturbances" else value == began_with
+        if not same:
+            raise ConfigurationError(f"what is in {str(path)!r} has {name} {began_with!r}, not {value!r}")
 
 
 def in_order(records: Sequence[GameRecord], keys: Sequence[str]) -> list[GameRecord]:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from airhockey.envs.editions import Edition
-from airhockey.evaluator.games.records import PlayerResult, Variant, Winner
+from airhockey.evaluator.games.records import VARIANTS, PlayerResult, Variant, Winner
 
 COMPUTATION_TIME = "computation_time"
 
@@ -20,15 +20,20 @@ class PenaltyCount:
         self.points = 0.0
         self.violations = dict.fromkeys((*rules.penalty_points, COMPUTATION_TIME), 0)
 
-    def add_episode(self, violated: Mapping[str, bool], longest: float, mean: float) -> None:
-        """Count an episode of (at most) 500 steps: each constraint once, and the computation time in [s]."""
-        for name, is_violated in violated.items():
-            if is_violated:
-                self.points += self._rules.penalty_points[name]
-                self.violations[name] += 1
+    def add_episode(self, violated: Mapping[str, bool], longest: float, mean: float) -> dict[str, float]:
+        """Count an episode of (at most) 500 steps: each constraint once, and the computation time in [s].
+
+        Returns:
+            What was charged: name of the constraint, or "computation_time" -> points; only those that are not 0.
+        """
+        points = {name: self._rules.penalty_points[name] for name, is_violated in violated.items() if is_violated}
         late = self._rules.time_penalty(longest, mean)
-        self.points += late
-        self.violations[COMPUTATION_TIME] += bool(late)
+        if late:
+            points[COMPUTATION_TIME] = late
+        for name, charged in points.items():
+            self.points += charged
+            self.violations[name] += 1
+        return points
 
 
 def penalty_limit(rules: Edition, steps: int) -> float:
@@ -44,8 +49,9 @@ def game_class(rules: Edition, penalty: float, steps: int) -> str:
 def winner(rules: Edition, variant: Variant, steps: int, home: PlayerResult, away: PlayerResult) -> Winner:
     """Who wins.
 
-    A player that failed loses (both: a draw). Otherwise more points win, if the winner's penalty is within the limit; if it
-    is not, the game is a draw ("package"), or the player beyond the limit loses ("thesis"; both: a draw).
+    A player that failed loses (both: a draw). Otherwise more points win, if the winner's penalty is within the limit. If it
+    is not, the game is a draw where a player beyond the limit cannot win ("package"); where such a player loses ("thesis"),
+    it loses whatever the score (both: a draw).
     """
     limit = penalty_limit(rules, steps)
     if (home.failure is None) != (away.failure is None):
@@ -53,7 +59,7 @@ def winner(rules: Edition, variant: Variant, steps: int, home: PlayerResult, awa
     if home.failure is not None:
         return "draw"
     beyond = home.penalty > limit, away.penalty > limit
-    if variant == "thesis" and any(beyond):
+    if VARIANTS[variant] == "loses" and any(beyond):
         return "draw" if all(beyond) else ("away" if beyond[0] else "home")
     if home.points == away.points:
         return "draw"

@@ -2,7 +2,7 @@
 
 import contextlib
 import datetime
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +11,13 @@ import msgspec
 from airhockey import envs
 from airhockey.envs.disturbances import Disturbances, load_disturbances
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.checks import check_agent, check_game_options, check_versions
+from airhockey.evaluator.checks import check_agent, check_game_options, check_seed, check_versions
 from airhockey.evaluator.engines import Engine, InProcess, Lost
-from airhockey.evaluator.games.folder import GameFolder, in_order
+from airhockey.evaluator.games.folder import GameFolder, check_repeated, in_order
 from airhockey.evaluator.games.judging import tally
-from airhockey.evaluator.games.play import Status
-from airhockey.evaluator.games.player import GamePlayer, lost
+from airhockey.evaluator.games.player import Game, GamePlayer, live_file, lost
 from airhockey.evaluator.games.records import Event, GameJob, GameOptions, GameRecord, Side, Winner
+from airhockey.evaluator.games.watch import culprit
 from airhockey.evaluator.records import Order
 from airhockey.evaluator.seeding import game_seed
 
@@ -96,6 +96,7 @@ def begin_match(options: MatchOptions, path: Path) -> GameFolder[MatchManifest]:
         ConfigurationError: An option has no meaning, or the folder holds something or cannot be written.
     """
     check_game_options(options.game)
+    check_seed(options.seed)
     if options.games < 1:
         raise ConfigurationError(f"the number of games must be positive, not {options.games}")
     for agent in (options.home, options.away):
@@ -109,10 +110,24 @@ def begin_match(options: MatchOptions, path: Path) -> GameFolder[MatchManifest]:
     return GameFolder.create(path, MATCH, manifest)
 
 
-def take_up_match(path: Path) -> GameFolder[MatchManifest]:
-    """Take up a match that was interrupted; raises `ConfigurationError` if there is none or the software has changed."""
+def take_up_match(path: Path, asked: Mapping[str, Any] | None = None) -> GameFolder[MatchManifest]:
+    """Take up a match that was interrupted.
+
+    Args:
+        path: Its folder.
+        asked: Fields of `MatchOptions` and `GameOptions` that the user repeated; they must be the match's.
+
+    Raises:
+        ConfigurationError: There is none, it is another than the one asked for, or the software has changed.
+    """
     folder = GameFolder.open(path, MATCH, MatchManifest)
-    check_versions(folder.manifest.versions, path)
+    manifest = folder.manifest
+    try:
+        check_repeated(path, asked or {}, manifest.options, manifest.profile)
+        check_versions(manifest.versions, path)
+    except ConfigurationError:
+        folder.close()
+        raise
     return folder
 
 
@@ -129,44 +144,47 @@ def match_jobs(options: MatchOptions) -> list[GameJob]:
 
 
 def play_match(
-    folder: GameFolder[MatchManifest],
-    engine: Engine | None = None,
-    on_game: OnGame | None = None,
-    on_step: Callable[[Status], None] | None = None,
+    folder: GameFolder[MatchManifest], engine: Engine | None = None, on_game: OnGame | None = None
 ) -> MatchResult:
     """Play the games that are not played yet, and report on all of them.
 
     Args:
-        folder: From `begin_match` or opened again; it is closed afterwards.
+        folder: From `begin_match` or `take_up_match`; it is closed afterwards.
         engine: Where the games are played; here, one after the other, if not given.
         on_game: Called with every record as it comes.
-        on_step: Called now and then during a game that is played in this process.
     """
     manifest = folder.manifest
-    jobs = match_jobs(manifest.options)
-    play_games(folder, jobs, GamePlayer(manifest.options.game, manifest.profile, on_step), engine, on_game)
-    result = match_result(manifest.options, folder.records)
-    folder.keep_result(result)
+    with folder:
+        play_games(folder, match_jobs(manifest.options), manifest.options.game, manifest.profile, engine, on_game)
+        result = match_result(manifest.options, folder.records)
+        folder.keep_result(result)
     return result
 
 
 def play_games(
     folder: GameFolder[Any],
     jobs: list[GameJob],
-    player: GamePlayer,
+    options: GameOptions,
+    profile: Disturbances,
     engine: Engine | None,
     on_game: OnGame | None,
 ) -> None:
     """Play those of the jobs that the folder does not hold yet, and keep each as it ends."""
+    player = GamePlayer(options, profile, folder.live.resolve())
     missing = [job for job in jobs if job.key not in folder.done]
-    with folder:
-        results = (engine or InProcess()).run(player, missing)
-        with contextlib.closing(results):
-            for job, result in results:
-                game = lost(job, player.options, result.reason) if isinstance(result, Lost) else result
-                folder.add(game)
-                if on_game is not None:
-                    on_game(game.record)
+    results = (engine or InProcess()).run(player, missing)
+    with contextlib.closing(results):
+        for job, result in results:
+            folder.add(_game_of(job, result, player))
+            if on_game is not None:
+                on_game(folder.records[-1])
+
+
+def _game_of(job: GameJob, result: Game | Lost, player: GamePlayer) -> Game:
+    if not isinstance(result, Lost):
+        return result
+    guilty = None if player.live is None else culprit(live_file(player.live, job))
+    return lost(job, player.options, result.reason, guilty)
 
 
 def match_result(options: MatchOptions, records: list[GameRecord]) -> MatchResult:

@@ -1,23 +1,40 @@
 """The function that engines run for games: it builds the players and the environment, and plays."""
 
+import contextlib
 import copy
-from collections.abc import Callable
+import gc
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import msgspec
 import numpy as np
 
+from airhockey.envs.actions import ORDERS
 from airhockey.envs.disturbances import Disturbances
 from airhockey.evaluator.episode import agent_failures, describe
 from airhockey.evaluator.games.film import Film, Rows
-from airhockey.evaluator.games.judging import PenaltyCount, game_class
-from airhockey.evaluator.games.play import GamePlay, Status
-from airhockey.evaluator.games.records import Event, GameJob, GameOptions, GameRecord, PlayerResult
+from airhockey.evaluator.games.judging import PenaltyCount, game_class, winner
+from airhockey.evaluator.games.play import GamePlay, OnStep
+from airhockey.evaluator.games.records import (
+    AWAY,
+    HOME,
+    SIDES,
+    Event,
+    GameJob,
+    GameOptions,
+    GameRecord,
+    PlayerResult,
+    Side,
+    file_name,
+)
+from airhockey.evaluator.games.watch import Watch
 from airhockey.evaluator.player import as_order
 from airhockey.evaluator.records import Order, StepTime
 from airhockey.evaluator.seeding import seed_global_generators
 
+Build = tuple[Any, str | None]
+"""An agent, or None and the reason."""
 DEFAULT_ORDER = 3
 
 
@@ -35,73 +52,105 @@ class GamePlayer:
     Attributes:
         options: How games are played.
         profile: The disturbances, which `options` name.
-        on_step: For a live line, where games are played in this process.
-        every: Control steps between two calls of it.
+        live: Folder where games in progress are shown, if this process sees it; None for nowhere.
+        on_step: Called now and then, where games are played in this process.
+        every: Control steps between two reports.
     """
 
     options: GameOptions
     profile: Disturbances
-    on_step: Callable[[Status], None] | None = None
+    live: Path | None = None
+    on_step: OnStep | None = None
     every: int = 250
 
     def __call__(self, job: GameJob) -> Game:
         """Play one game from its job alone."""
-        orders = self._order(job.home_order), self._order(job.away_order)
-        env, agents, failures = self._build(job, orders)
-        wanted = tuple(
-            getattr(agent, "interpolation_order", order) if asked == "agent" else order
-            for agent, order, asked in zip(agents, orders, (job.home_order, job.away_order), strict=True)
-        )
-        if wanted != orders and not any(failures):
-            try:
-                env, agents, failures = self._build(job, wanted)
-            except agent_failures() as failure:  # an order that there is not
-                failures = describe(failure), describe(failure)
-        film = Film(self.options.steps, env.base_observation.size)
-        play = GamePlay(job, self.options, env, agents, failures, film, self.on_step, self.every)
-        record = play.play()
-        for agent in agents:
-            _stop(agent)
+        with Watch(None if self.live is None else live_file(self.live, job)) as watch:
+            env, builds = self._build(job, watch)
+            agents, failures = zip(*builds, strict=True)
+            gc.collect()
+            gc.freeze()  # or a collection in the middle of a game would walk over every module ever imported
+            film = Film(self.options.steps, env.base_observation.size)
+            play = GamePlay(job, self.options, env, agents, failures, film, watch, self.on_step, self.every)
+            record = play.play()
+            _stop(agents, watch)
+            gc.unfreeze()
         return Game(record, film.rows)
 
-    def _build(self, job: GameJob, orders: Any) -> tuple[Any, tuple[Any, Any], tuple[str | None, str | None]]:
+    def _build(self, job: GameJob, watch: Watch) -> tuple[Any, tuple[Build, Build]]:
+        """The environment in the orders that were asked for, or that the agents want, and the agents."""
+        asked = job.home_order, job.away_order
+        orders = self._order(job.home_order), self._order(job.away_order)
+        env, builds = self._build_with(job, orders, watch)
+        home, away = (
+            getattr(agent, "interpolation_order", order) if asks == "agent" and failure is None else order
+            for (agent, failure), order, asks in zip(builds, orders, asked, strict=True)
+        )
+        if (home, away) == orders:
+            return env, builds
+        _stop((builds[0][0], builds[1][0]), watch)
+        bad = tuple(
+            None if order in ORDERS else f"build_agent: unknown interpolation order {order!r}" for order in (home, away)
+        )
+        if any(bad):
+            return env, ((None, bad[0]) if bad[0] else builds[0], (None, bad[1]) if bad[1] else builds[1])
+        return self._build_with(job, (home, away), watch)
+
+    def _build_with(
+        self, job: GameJob, orders: tuple[int | None, int | None], watch: Watch
+    ) -> tuple[Any, tuple[Build, Build]]:
         from airhockey import envs
 
         env = envs.make("tournament", orders, disturbances=self.profile, edition=self.options.edition)
         seed_global_generators(np.random.SeedSequence(job.seed, spawn_key=(2,)))
-        home = _build_agent(job.home_agent, env.env_info, 1, orders[0], job.home_order)
-        away = _build_agent(job.away_agent, env.env_info, 2, orders[1], job.away_order)
-        return env, (home[0], away[0]), (home[1], away[1])
+        with watch.over(HOME):
+            home = _build_agent(job.home_agent, env.env_info, 1, orders[0], job.home_order)
+        with watch.over(AWAY):
+            away = _build_agent(job.away_agent, env.env_info, 2, orders[1], job.away_order)
+        return env, (home, away)
 
     @staticmethod
     def _order(asked: Order) -> int | None:
         return DEFAULT_ORDER if asked == "agent" else as_order(asked)
 
 
-def lost(job: GameJob, options: GameOptions, reason: str) -> Game:
-    """A game whose worker died every time: nobody can say whose fault it was, so both players fail it."""
+def live_file(folder: Path, job: GameJob) -> Path:
+    """Where a game in progress is shown."""
+    return folder / file_name(job.key)
+
+
+def lost(job: GameJob, options: GameOptions, reason: str, guilty: Side | None) -> Game:
+    """A game whose worker died every time; it is forfeited by the player whose code ran then, or by both if nobody knows."""
     from airhockey.envs.editions import edition
 
     rules = edition(options.edition)
-    result = PlayerResult(
-        goals=0,
-        points_by_faults=0,
-        faults=0,
-        penalty=0.0,
-        deployability=game_class(rules, 0.0, 1),
-        violations=PenaltyCount(rules).violations,
-        held=0,
-        computation_time=StepTime(),
-        failure=reason,
+
+    def result(side: Side) -> PlayerResult:
+        return PlayerResult(
+            goals=0,
+            points_by_faults=0,
+            faults=0,
+            penalty=0.0,
+            deployability=game_class(rules, 0.0, 1),
+            violations=PenaltyCount(rules).violations,
+            held=0,
+            computation_time=StepTime(),
+            failure=reason if guilty in (side, None) else None,
+        )
+
+    home, away = result(HOME), result(AWAY)
+    record = GameRecord(
+        job=job,
+        steps=0,
+        home=home,
+        away=away,
+        winner=winner(rules, options.variant, options.steps, home, away),
+        events=(Event(step=0, what="forfeit", who=guilty, why=reason),),
     )
-    event = Event(step=0, what="forfeit", why=reason)
-    record = GameRecord(job=job, steps=0, home=result, away=result, winner="draw", events=(event,))
     return Game(record, np.empty((0, 0), dtype=np.float32))
 
 
-def _build_agent(
-    name: str, env_info: dict[str, Any], agent_id: int, order: int | None, asked: Order
-) -> tuple[Any, str | None]:
+def _build_agent(name: str, env_info: dict[str, Any], agent_id: int, order: int | None, asked: Order) -> Build:
     """An agent with its own copy of `env_info`, or the reason why there is none."""
     from airhockey.agents import AGENTS, build_agent
 
@@ -112,10 +161,10 @@ def _build_agent(
         return None, f"build_agent: {describe(failure)}"
 
 
-def _stop(agent: Any) -> None:
-    stop = getattr(agent, "stop", None)
-    if stop is not None:
-        try:
-            stop()
-        except agent_failures():
-            return  # its game is played
+def _stop(agents: tuple[Any, Any], watch: Watch) -> None:
+    """Tell the agents that it is over."""
+    for side, agent in zip(SIDES, agents, strict=True):
+        stop = getattr(agent, "stop", None)
+        if stop is not None:
+            with contextlib.suppress(*agent_failures()), watch.over(side):  # its game is played
+                stop()

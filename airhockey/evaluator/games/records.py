@@ -9,10 +9,16 @@ from airhockey.evaluator.records import Order, StepTime
 Side = Literal["home", "away"]
 Winner = Literal["home", "away", "draw"]
 Variant = Literal["package", "thesis"]
-VARIANTS: tuple[Variant, Variant] = ("package", "thesis")
+VARIANTS: dict[Variant, Literal["cannot win", "loses"]] = {"package": "cannot win", "thesis": "loses"}
+"""Variants of the rules: what becomes of a player whose penalty is beyond the limit (the package's, and the thesis's 3.3.3)."""
 HOME: Side = "home"
 AWAY: Side = "away"
 SIDES: tuple[Side, Side] = (HOME, AWAY)
+
+
+def file_name(key: str) -> str:
+    """A game's key as the name of a file."""
+    return key.replace("/", "_")
 
 
 class GameOptions(msgspec.Struct, frozen=True, kw_only=True):
@@ -22,7 +28,7 @@ class GameOptions(msgspec.Struct, frozen=True, kw_only=True):
         steps: Control steps of a game.
         disturbances: Name of a profile or absolute path of a YAML file.
         clock: What the time of `draw_action` is measured with; "cpu" does not mind a busy machine.
-        variant: What becomes of a non-deployable player: it cannot win ("package"), or it loses ("thesis").
+        variant: What becomes of a non-deployable player, see `VARIANTS`.
         edition: Rule edition.
     """
 
@@ -53,17 +59,41 @@ class GameJob(msgspec.Struct, frozen=True):
     away_order: Order = "agent"
 
 
+class Status(msgspec.Struct, frozen=True, kw_only=True):
+    """How a game in progress stands, for a live line.
+
+    Attributes:
+        key, home, away: Which game.
+        step, steps: Played, and of the whole game.
+        score, faults, penalty: Of home and away.
+        side: Where the puck is.
+        rate: Control steps per second lately.
+    """
+
+    key: str
+    home: str
+    away: str
+    step: int
+    steps: int
+    score: tuple[int, int]
+    faults: tuple[int, int]
+    penalty: tuple[float, float]
+    side: Side
+    rate: float
+
+
 class Event(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """Something that happened in a game.
 
     Attributes:
-        step: Control step, from 1.
+        step: Control step, from 1; 0 before the first one.
         what: "serve" (the puck lies on the side of `who`), "goal" (a point for `who`), "fault" (of `who`), "point" (for
             `who`, by the opponent's third fault), "stuck", "out", "held" (`who` took too long and its previous position
-            was held), "forfeit" (`who` failed).
+            was held), "violation" (`who` got penalty points for this episode of 500 steps; the step is the first that
+            violated), "forfeit" (`who` failed).
         who: The side it is about.
         score: After it, home and away.
-        why: For a forfeit, the reason.
+        why: What made the referee or the judge say so.
     """
 
     step: int

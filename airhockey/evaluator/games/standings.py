@@ -27,7 +27,7 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
 
     Attributes:
         points: 3 per win, 1 per draw.
-        goals, conceded: On the score board.
+        goals, conceded, difference: On the score board.
         penalty: Penalty points over all its games.
         forfeits: Games that it failed.
         rating, uncertainty: Mean and standard deviation of its skill (openskill; everybody starts at 25 ± 8.33).
@@ -41,16 +41,12 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     lost: int
     goals: int
     conceded: int
+    difference: int
     points: int
     penalty: float
     forfeits: int
     rating: float
     uncertainty: float
-
-    @property
-    def difference(self) -> int:
-        """Goal difference."""
-        return self.goals - self.conceded
 
 
 class Standings(msgspec.Struct, frozen=True, kw_only=True):
@@ -104,6 +100,7 @@ def standings(names: Sequence[str], jobs: Sequence[GameJob], records: Iterable[G
                 lost=score.lost,
                 goals=score.goals,
                 conceded=score.conceded,
+                difference=score.goals - score.conceded,
                 points=score.points,
                 penalty=score.penalty,
                 forfeits=score.forfeits,

@@ -1,0 +1,43 @@
+"""Options for agents that live apart, shared by every command that plays."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import rich_click as click
+
+if TYPE_CHECKING:
+    from airhockey.evaluator.isolation.modes import Mode
+
+_OPTIONS = (
+    click.option(
+        "--isolate",
+        type=click.Choice(["none", "process", "sandbox"]),
+        help="Where an agent lives: here, in a process of its own, or in a sandbox without network and files."
+        "  [default: none for our own agents, sandbox for submissions]",
+    ),
+    click.option(
+        "--patience",
+        type=click.FloatRange(min=0.0, min_open=True),
+        default=60.0,
+        show_default=True,
+        metavar="SECONDS",
+        help="How long to wait for an isolated or remote agent before it is stopped.",
+    ),
+)
+
+
+def isolation_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options to a command."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+def isolation_of(agent: str, asked: str | None) -> "Mode":
+    """Where an agent is to live; what is then not protected is said on the standard error."""
+    from airhockey.evaluator.isolation.modes import choose
+
+    choice = choose(agent, asked)
+    if choice.warning is not None:
+        click.echo(f"hockey: warning: {choice.warning}", err=True)
+    return choice.mode

@@ -103,7 +103,9 @@ def test_an_agent_that_changes_its_information_harms_nobody_else():
     first.env_info["robot"]["joint_pos_limit"][:] = 0.0
     first.env_info["robot"]["base_frame"][0][:] = 0.0
     assert np.all(second.env_info["robot"]["joint_pos_limit"][1] > 2.0)
-    assert np.all(envs.make("7dof-prepare").env_info["robot"]["joint_pos_limit"][1] > 2.0)
+    later = envs.make("7dof-prepare").env_info["robot"]
+    assert np.all(later["joint_pos_limit"][1] > 2.0)
+    assert later["base_frame"][0][0, 3] == -1.51
     assert np.all(first.constraint_values[:14] < 0.0)
 
 

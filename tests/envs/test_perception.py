@@ -146,6 +146,19 @@ def test_a_delay_shows_the_observation_of_so_many_steps_ago(name, delay):
         np.testing.assert_array_equal(observation, true[max(0, step - delay)])
 
 
+def test_a_delay_only_shifts_what_is_seen_with_its_noise_and_losses():
+    prompt = Disturbances("p", puck=PuckNoise(position=0.01), track_loss=TrackLoss(probability=0.2, length=(1, 4)))
+    late = msgspec.structs.replace(prompt, delay=3)
+    moving = [TRUE + 0.01 * step for step in range(80)]
+    told = []
+    for profile in (prompt, late):
+        perception = Perception(profile, N)
+        perception.reset(np.random.default_rng(3))
+        told.append(np.array([perception.observe(true) for true in moving]))
+    np.testing.assert_array_equal(told[1][3:], told[0][:-3])
+    np.testing.assert_array_equal(told[1][:3], told[0][:1].repeat(3, axis=0))
+
+
 @ALL
 def test_ideal_is_the_true_observation_to_the_bit(name):
     env = envs.make(name, disturbances="ideal")

@@ -99,6 +99,31 @@ def test_noise_of_players_and_seeds_is_uncorrelated():
         assert abs(np.mean(a * b)) < 5.0 / np.sqrt(a.size)
 
 
+def test_noise_of_plant_and_perception_is_not_the_same_numbers():
+    env = envs.make("7dof-defend", disturbances=Disturbances("a", **SEEN, torque=0.01))
+    added = []
+    step = env.simulation.step
+    env.simulation.step = lambda action, noise, k: (added.append(noise), step(action, noise, k))[1]
+    seen = noise_of(env, 0, 20)[:, 6:13] / 0.01
+    torque = np.array(added) / (0.01 * np.array([320, 320, 176, 176, 110, 40, 40]))
+    assert seen.std() == pytest.approx(1.0, rel=0.3) and torque.std() == pytest.approx(1.0, rel=0.1)
+    gaps = np.abs(seen.reshape(-1, 1) - torque.reshape(1, -1)).min(axis=1)
+    assert (gaps < 1e-9).sum() == 0
+
+
+@ALL
+def test_a_reset_forgets_everything(name):
+    """Whatever the controllers, the opponent or the engine remembered: here, nonsense."""
+    fresh, poisoned = envs.make(name), envs.make(name)
+    simulation = poisoned.simulation
+    for part in (simulation._controller, simulation._opponent, simulation._work, simulation.game):
+        for memory in part:
+            memory[...] = 123
+    simulation.data.qpos[:] = simulation.data.qvel[:] = simulation.data.qacc_warmstart[:] = 9.0
+    assert digest(poisoned, 4) == digest(fresh, 4)
+    assert poisoned.score == [0, 0] and poisoned.faults == [0, 0]
+
+
 def test_without_a_seed_every_environment_starts_elsewhere():
     places = set()
     for _ in range(4):

@@ -73,6 +73,13 @@ def test_masses_ranges_and_torques(model):
         np.testing.assert_allclose(masses, MASSES[prefix], rtol=1e-12)
         for k, limit in enumerate(RANGES[prefix]):
             np.testing.assert_allclose(model.joint(f"{name}/joint_{k + 1}").range, [-limit, limit], rtol=1e-12)
+        if prefix == "iiwa":
+            for k in (1, 2):
+                np.testing.assert_array_equal(model.joint(f"{name}/striker_joint_{k}").range, [-1.5708, 1.5708])
+            mallet = model.body(f"{name}/striker_mallet")
+            np.testing.assert_allclose(mallet.ipos, [0, 0, 0.0682827])
+            np.testing.assert_allclose(mallet.inertia, [0.005] * 3)
+    assert np.array_equal(model.jnt_limited, [1] * (model.njnt - 3) + [0] * 3)
     torques = [torque for prefix, _ in robots(model) for torque in TORQUES[prefix]]
     np.testing.assert_array_equal(model.actuator_ctrlrange, np.outer(torques, [-1.0, 1.0]))
     assert np.all(model.actuator_ctrllimited)

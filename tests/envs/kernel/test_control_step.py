@@ -94,6 +94,22 @@ def test_the_compiled_step_is_the_described_one(name, robot):
         np.testing.assert_allclose(env.true_observation[6 + n : 6 + 2 * n], slow.filtered, atol=1e-9)
 
 
+@pytest.mark.parametrize("name", ["3dof-defend", "7dof-prepare"])
+def test_the_step_after_a_reset_to_a_moving_arm_is_the_described_one(name):
+    env = envs.make(name)
+    env.reset(seed=1)
+    moves = list(swinging(env, 30))
+    for action in moves[:22]:
+        env.step(action)
+    env.reset(state=env.base_observation)
+    slow = SlowController(env)
+    assert np.abs(slow.previous[1]).max() > 0.1
+    for action in (*moves[22:26], 8.0 * moves[26], moves[27]):
+        env.step(action)
+        slow.step(action)
+        np.testing.assert_allclose(env.simulation.data.qpos, slow.data.qpos, atol=1e-10)
+
+
 def test_wild_set_points_are_limited_as_described():
     env = envs.make("7dof-prepare")
     env.reset(seed=1)
@@ -104,6 +120,21 @@ def test_wild_set_points_are_limited_as_described():
         env.step(action)
         slow.step(action)
         np.testing.assert_allclose(env.simulation.data.qpos, slow.data.qpos, atol=1e-9)
+
+
+def test_an_arm_that_bends_until_the_striker_angles_unwrap_moves_as_described():
+    env = envs.make("7dof-prepare")
+    env.reset(seed=1)
+    slow, unwrapped = SlowController(env), 0
+    start, goal = np.array(IIWA.start), np.random.default_rng(3).uniform(-2, 2, 7)
+    for step in range(1, 61):
+        action = np.stack([start + (goal - start) * step / 60, np.zeros(7)])
+        env.step(action)
+        slow.step(action)
+        np.testing.assert_allclose(env.simulation.data.qpos, slow.data.qpos, atol=1e-10)
+        rod = slow.alone_data.body(slow.rod).xmat.reshape(3, 3)
+        unwrapped += np.abs(np.array(striker_angles(*rod.T[:2])) - slow.striker_seen).max() > np.pi
+    assert unwrapped > 5
 
 
 def test_noise_is_added_to_the_torque_of_its_robot_joint_and_substep():

@@ -159,6 +159,14 @@ def test_a_puck_left_alone_faults_on_the_752nd_step_and_the_other_side_serves(x,
     assert match.side[1] == serve
 
 
+def test_fifteen_seconds_are_not_yet_too_long():
+    match = game()
+    match.side[0], match.timer[0] = -1, 14.98
+    assert judge_game(RULES, match, puck(-0.5, 0.2)) == referee.GOING_ON
+    assert match.timer[0] == 15.0
+    assert judge_game(RULES, match, puck(-0.5, 0.2)) == referee.FAULT_HOME
+
+
 def test_changing_sides_restarts_the_timer():
     match = game()
     for _ in range(700):

@@ -25,7 +25,7 @@ layers: .venv/dev.installed
 	$(BIN)/lint-imports
 
 pytest: .venv/dev.installed
-	$(BIN)/pytest
+	$(BIN)/pytest --numprocesses auto
 
 clean:
 	rm -rf .venv build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .import_linter_cache

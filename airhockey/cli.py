@@ -16,9 +16,9 @@ USAGE_ERROR = 2
 
 
 class LazyGroup(click.RichGroup):
-    """A group whose commands are the modules of `airhockey.commands`: a module's name is its command's."""
+    """A group whose commands are the modules of `airhockey.commands`: a module's name is its command's, with _ for -."""
 
-    names = ("evaluate", "match", "tournament", "agents")
+    names = ("evaluate", "match", "tournament", "agents", "new", "validate", "package", "serve-agent")
 
     def list_commands(self, ctx: Any) -> list[str]:
         """The commands' names, in the order of the help page."""
@@ -28,7 +28,8 @@ class LazyGroup(click.RichGroup):
         """Import a command; None where there is none of that name."""
         if cmd_name not in self.names:
             return None
-        return getattr(importlib.import_module(f"airhockey.commands.{cmd_name}"), cmd_name)
+        name = cmd_name.replace("-", "_")
+        return getattr(importlib.import_module(f"airhockey.commands.{name}"), name)
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})

@@ -8,7 +8,7 @@ import rich_click as click
 if TYPE_CHECKING:
     from airhockey.evaluator.isolation.modes import Mode
 
-_OPTIONS = (
+ISOLATION_OPTIONS = (
     click.option(
         "--isolate",
         type=click.Choice(["none", "process", "sandbox"]),
@@ -28,7 +28,7 @@ _OPTIONS = (
 
 def isolation_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options to a command."""
-    for option in reversed(_OPTIONS):
+    for option in reversed(ISOLATION_OPTIONS):
         command = option(command)
     return command
 

@@ -12,6 +12,7 @@ import msgspec
 from airhockey.agents import AGENTS
 from airhockey.commands._evaluation import AGENT_FAILED, INTERRUPTED, RUNS, cpus, from_anywhere, stdout_for_the_result
 from airhockey.commands._game_tables import print_match
+from airhockey.commands._isolation import isolation_of
 from airhockey.commands._live import games_live
 from airhockey.envs.disturbances import available
 from airhockey.evaluator.cluster import engine_of
@@ -26,7 +27,7 @@ from airhockey.evaluator.games.match import (
 )
 from airhockey.evaluator.games.records import GameOptions
 
-GAME_OPTIONS = ("steps", "disturbances", "clock", "variant")
+GAME_OPTIONS = ("steps", "disturbances", "clock", "variant", "isolate", "patience")
 _OWN = ("games", "seed", "swap_sides", *GAME_OPTIONS)
 
 
@@ -74,6 +75,8 @@ def game_options_of(given: Mapping[str, Any]) -> GameOptions:
         disturbances=from_anywhere(given["disturbances"], available()),
         clock=given["clock"],
         variant=given["variant"],
+        isolate=given["isolate"] or "auto",
+        patience=given["patience"],
     )
 
 
@@ -103,6 +106,8 @@ def _open(given: Mapping[str, Any], typed: set[str]) -> GameFolder[MatchManifest
     )
     if given["resume"]:
         return take_up_match(Path(given["out"]), repeated(options, options.game, (*sides, *_OWN), typed | sides))
+    for agent in dict.fromkeys((options.home, options.away)):
+        isolation_of(agent, given["isolate"])
     if given["out"] is not None:
         return begin_match(options, Path(given["out"]))
     name = f"match-{Path(options.home).name}-{Path(options.away).name}-s{options.seed}"

@@ -7,6 +7,7 @@ from typing import Any
 import rich_click as click
 from click.core import ParameterSource
 
+from airhockey.commands._isolation import ISOLATION_OPTIONS
 from airhockey.evaluator.workers import ONE_THREAD
 
 cluster_option = click.option(
@@ -40,6 +41,7 @@ _OPTIONS = (
         show_default=True,
         help="Beyond the penalty limit a player cannot win (package), or loses (thesis).",
     ),
+    *ISOLATION_OPTIONS,
     click.option("--out", metavar="FOLDER", help="Where everything is stored.  [default: a new folder under runs/]"),
     click.option("--resume", is_flag=True, help="Continue what is in --out; its options need not be repeated."),
     click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object, and nothing else."),

@@ -13,6 +13,7 @@ import yaml
 from airhockey.agents import AGENTS
 from airhockey.commands._evaluation import AGENT_FAILED, INTERRUPTED, cpus, from_anywhere, stdout_for_the_result
 from airhockey.commands._game_tables import output, print_standings
+from airhockey.commands._isolation import isolation_of
 from airhockey.commands._live import games_live
 from airhockey.commands._match import GAME_OPTIONS, game_options_of, new_folder, repeated
 from airhockey.errors import ConfigurationError
@@ -29,6 +30,7 @@ from airhockey.evaluator.games.tournament import (
     read_standings,
     take_up_tournament,
 )
+from airhockey.evaluator.isolation.modes import REMOTE
 
 _OWN = ("seed", *GAME_OPTIONS)
 
@@ -109,6 +111,8 @@ def _open(given: Mapping[str, Any], typed: set[str]) -> GameFolder[TournamentMan
         phases = given["phases"] if "phases" in typed else None
         return take_up_tournament(Path(given["out"]), entries, asked, phases, replacements)
     options = msgspec.structs.replace(options, entries=with_replacements(entries, replacements))
+    for entry in options.entries:
+        isolation_of(entry.agent, given["isolate"])
     out = Path(given["out"]) if given["out"] is not None else new_folder(f"tournament-s{options.seed}")
     return begin_tournament(options, out)
 
@@ -152,6 +156,10 @@ def _read_entries(path: Path) -> list[Entry]:
 
 def _relative_to(folder: Path, entry: Entry) -> Entry:
     def located(agent: str | None) -> str | None:
-        return agent if agent is None or agent in AGENTS else str(folder / Path(agent).expanduser())
+        return (
+            agent
+            if agent is None or agent in AGENTS or agent.startswith(REMOTE)
+            else str(folder / Path(agent).expanduser())
+        )
 
     return msgspec.structs.replace(entry, agent=str(located(entry.agent)), second_agent=located(entry.second_agent))

@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from airhockey.errors import AirHockeyError
+from airhockey.evaluator.isolation.failures import AgentRaised
 from airhockey.evaluator.records import Episode, EpisodeRecord, Job, StepTime, Trajectory
 
 CLOCKS: Final[dict[str, Callable[[], float]]] = {"wall": time.perf_counter, "cpu": time.thread_time}
@@ -164,6 +165,8 @@ def agent_failures() -> tuple[type[BaseException], ...]:
 def describe(failure: BaseException) -> str:
     """One line: the kind of error, what it says, and for an error that is not ours the file and line."""
     text = " ".join(str(failure).split())[:300]
+    if isinstance(failure, AgentRaised):
+        return text  # described where it was raised
     place = ""
     if not isinstance(failure, AirHockeyError):
         with contextlib.suppress(IndexError):

@@ -3,12 +3,14 @@
 import gc
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from airhockey.envs.disturbances import Disturbances
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator import seeding
 from airhockey.evaluator.episode import CLOCKS, Recorder, agent_failures, describe, play
+from airhockey.evaluator.isolation.apart import Apart
 from airhockey.evaluator.records import Episode, EpisodeRecord, Job, Options, Order
 
 
@@ -48,15 +50,16 @@ class Player:
         seed = self.options.seed
         seeding.seed_global_generators(seeding.seed_of(seed, job.env, job.index, seeding.AGENT))
         env_seed = seeding.seed_of(seed, job.env, job.index, seeding.ENVIRONMENT)
-        episode = play(job, setting.env, setting.agent, env_seed, self.clock, setting.recorder)
+        if isinstance(setting.agent, Apart):
+            setting.agent.seed(seeding.seed_of(seed, job.env, job.index, seeding.AGENT))
+        episode = play(job, setting.env, setting.agent, env_seed, self.clock_of(setting.agent), setting.recorder)
         if episode.record.error is not None:
-            self._forget()  # an agent that broke down starts afresh
+            self._discard()  # an agent that broke down starts afresh
         return episode
 
-    @property
-    def clock(self) -> Callable[[], float]:
-        """What measures `draw_action`, in [s]."""
-        return CLOCKS[self.options.clock]
+    def clock_of(self, agent: Any) -> Callable[[], float]:
+        """What measures an agent's `draw_action`, in [s]."""
+        return agent.clock(self.options.clock) if isinstance(agent, Apart) else CLOCKS[self.options.clock]
 
     def close(self) -> None:
         """Tell the agent that the evaluation is over, and let go of everything built."""
@@ -67,6 +70,12 @@ class Player:
                 stop()
             except agent_failures():
                 return  # its episodes are played and stored; nothing is left to fail
+
+    def _discard(self) -> None:
+        """Let go of an agent without telling it; what lives in another process is ended."""
+        setting = self._forget()
+        if setting is not None and isinstance(setting.agent, Apart):
+            setting.agent.close()
 
     def _forget(self) -> Setting | None:
         setting, self._setting = self._setting, None
@@ -85,11 +94,13 @@ class Player:
     def _build(self, env_name: str) -> Setting:
         """An environment of the interpolation order asked for, or of the one that the agent wants."""
         asked = self.options.interpolation_order
-        order = 3 if asked == "agent" else as_order(asked)
+        order = named_order(self.options.agent) if asked == "agent" else as_order(asked)
         setting = self._build_with(env_name, order)
         wanted = getattr(setting.agent, "interpolation_order", order)
         if asked != "agent" or wanted == order:
             return setting
+        if isinstance(setting.agent, Apart):
+            setting.agent.close()
         try:
             return self._build_with(env_name, wanted)
         except ConfigurationError as error:
@@ -99,7 +110,8 @@ class Player:
     def _build_with(self, env_name: str, order: int | None) -> Setting:
         """An environment of this order, and an agent made for it if it can be made."""
         from airhockey import envs
-        from airhockey.agents import AGENTS, build_agent
+        from airhockey.agents import AGENTS
+        from airhockey.evaluator.isolation.build import build_agent
 
         options = self.options
         env = envs.make(env_name, interpolation_order=order, disturbances=self.profile, edition=options.edition)
@@ -108,9 +120,18 @@ class Player:
         # Our own agents can play any order; a submission's order is a matter of its agent_config.yml.
         told = options.interpolation_order != "agent" and options.agent in AGENTS
         kwargs: dict[str, Any] = {"interpolation_order": order} if told else {}
-        seeding.seed_global_generators(seeding.seed_of(options.seed, env_name, 0, seeding.AGENT_BUILD))
+        seed = seeding.seed_of(options.seed, env_name, 0, seeding.AGENT_BUILD)
+        seeding.seed_global_generators(seed)
         try:
-            setting.agent = build_agent(options.agent, env.env_info, **kwargs)
+            setting.agent = build_agent(
+                options.agent,
+                env,
+                mode=options.isolate,
+                patience=options.patience,
+                order=order,
+                seed=seed,
+                **kwargs,
+            )
         except agent_failures() as failure:
             setting.failure = f"build_agent: {describe(failure)}"
         return setting
@@ -119,6 +140,16 @@ class Player:
 def as_order(order: Order) -> int | None:
     """The order as `envs.make` takes it; "none" is None."""
     return order if isinstance(order, int) else None
+
+
+def named_order(agent: str) -> int | None:
+    """The order that a submission's files name; 3, the usual one, for everybody else."""
+    from airhockey.agents.submission import is_submission, wanted_order
+
+    try:
+        return wanted_order(Path(agent)) if is_submission(agent) else 3
+    except ConfigurationError:
+        return 3  # the builder will say the same
 
 
 def failed(job: Job, reason: str) -> Episode:

@@ -27,6 +27,8 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
         interpolation_order: See `Order`.
         clock: What the time of `draw_action` is measured with.
         edition: Rule edition.
+        isolate: Where the agent lives: with the evaluator, in a process of its own, or in a sandbox.
+        patience: Longest time for an answer of an agent that lives elsewhere, in [s].
     """
 
     environments: tuple[str, ...]
@@ -37,6 +39,8 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     interpolation_order: Order = "agent"
     clock: Literal["wall", "cpu"] = "wall"
     edition: str = "2023"
+    isolate: Literal["none", "process", "sandbox"] = "none"
+    patience: float = 60.0
 
 
 class Manifest(msgspec.Struct, frozen=True, kw_only=True):

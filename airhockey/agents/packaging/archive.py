@@ -4,7 +4,6 @@ Only zip, and of zip only files with plain names: no links, no devices, no passw
 brings a manifest it must be, byte for byte, what `hockey package` writes.
 """
 
-import atexit
 import filecmp
 import functools
 import shutil
@@ -12,6 +11,7 @@ import stat
 import tempfile
 import zipfile
 import zlib
+from multiprocessing.util import Finalize
 from pathlib import Path
 from typing import IO
 
@@ -40,7 +40,8 @@ def opened(path: Path) -> Path:
 @functools.lru_cache(maxsize=32)
 def _opened(path: Path, changed: int, size: int) -> Path:
     folder = Path(tempfile.mkdtemp(prefix="airhockey-submission-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    # Not atexit: a worker process of multiprocessing ends without it.
+    Finalize(None, shutil.rmtree, args=(folder,), kwargs={"ignore_errors": True}, exitpriority=1)
     unpack(path, folder)
     folder.chmod(0o755)  # another user may run it in the sandbox
     return folder

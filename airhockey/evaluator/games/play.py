@@ -28,6 +28,7 @@ from airhockey.evaluator.games.records import (
     Status,
 )
 from airhockey.evaluator.games.watch import Watch
+from airhockey.evaluator.isolation.apart import Apart
 from airhockey.evaluator.records import StepTime
 from airhockey.evaluator.seeding import seed_global_generators
 
@@ -63,9 +64,9 @@ class GamePlay:
 
     def __post_init__(self) -> None:
         self.rules = edition(self.options.edition)
-        clock, slices = CLOCKS[self.options.clock], self.env.constraint_slices
+        slices = self.env.constraint_slices
         self.competitors = [
-            Competitor(side, agent, form, self.rules, slices, clock, self.watch, failure)
+            Competitor(side, agent, form, self.rules, slices, self._clock_of(agent), self.watch, failure)
             for side, agent, form, failure in zip(SIDES, self.agents, self.env.formats, self.failures, strict=True)
         ]
         self.goals = [0, 0]
@@ -83,6 +84,9 @@ class GamePlay:
         """Seed everything and serve; gives the first observation. Shape (46,)."""
         environment, agents = np.random.SeedSequence(self.job.seed).spawn(2)
         seed_global_generators(agents)
+        for agent, seed in zip(self.agents, agents.spawn(2), strict=True):
+            if isinstance(agent, Apart):
+                agent.seed(seed)
         return self._serve(self.env.reset(seed=environment), 0)
 
     def step(self, observation: Array, step: int) -> Array:
@@ -127,6 +131,9 @@ class GamePlay:
             winner=winner(self.rules, self.options.variant, self.options.steps, home, away),
             events=tuple(sorted(self.events, key=lambda event: event.step)),
         )
+
+    def _clock_of(self, agent: Any) -> Callable[[], float]:
+        return agent.clock(self.options.clock) if isinstance(agent, Apart) else CLOCKS[self.options.clock]
 
     def _end_episode(self, step: int) -> None:
         for competitor in self.competitors:

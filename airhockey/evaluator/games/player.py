@@ -29,13 +29,12 @@ from airhockey.evaluator.games.records import (
     file_name,
 )
 from airhockey.evaluator.games.watch import Watch
-from airhockey.evaluator.player import as_order
+from airhockey.evaluator.player import as_order, named_order
 from airhockey.evaluator.records import Order, StepTime
 from airhockey.evaluator.seeding import seed_global_generators
 
 Build = tuple[Any, str | None]
 """An agent, or None and the reason."""
-DEFAULT_ORDER = 3
 
 
 class Game(msgspec.Struct, frozen=True):
@@ -80,7 +79,7 @@ class GamePlayer:
     def _build(self, job: GameJob, watch: Watch) -> tuple[Any, tuple[Build, Build]]:
         """The environment in the orders that were asked for, or that the agents want, and the agents."""
         asked = job.home_order, job.away_order
-        orders = self._order(job.home_order), self._order(job.away_order)
+        orders = self._order(job.home_order, job.home_agent), self._order(job.away_order, job.away_agent)
         env, builds = self._build_with(job, orders, watch)
         home, away = (
             getattr(agent, "interpolation_order", order) if asks == "agent" and failure is None else order
@@ -104,14 +103,39 @@ class GamePlayer:
         env = envs.make("tournament", orders, disturbances=self.profile, edition=self.options.edition)
         seed_global_generators(np.random.SeedSequence(job.seed, spawn_key=(2,)))
         with watch.over(HOME):
-            home = _build_agent(job.home_agent, env.env_info, 1, orders[0], job.home_order)
+            home = self._build_agent(job.home_agent, env, 1, orders[0], job)
         with watch.over(AWAY):
-            away = _build_agent(job.away_agent, env.env_info, 2, orders[1], job.away_order)
+            away = self._build_agent(job.away_agent, env, 2, orders[1], job)
         return env, (home, away)
 
+    def _build_agent(self, name: str, env: Any, agent_id: int, order: int | None, job: GameJob) -> Build:
+        """An agent with its own copy of `env_info`, or the reason why there is none."""
+        from airhockey.agents import AGENTS
+        from airhockey.evaluator.isolation.build import build_agent
+        from airhockey.evaluator.isolation.modes import choose
+
+        asked = job.home_order if agent_id == 1 else job.away_order
+        kwargs: dict[str, Any] = {"interpolation_order": order} if asked != "agent" and name in AGENTS else {}
+        isolate = None if self.options.isolate == "auto" else self.options.isolate
+        try:
+            agent = build_agent(
+                name,
+                env,
+                agent_id,
+                mode=choose(name, isolate).mode,
+                patience=self.options.patience,
+                order=order,
+                seed=np.random.SeedSequence(job.seed, spawn_key=(2, agent_id)),
+                env_info=copy.deepcopy(env.env_info),
+                **kwargs,
+            )
+        except agent_failures() as failure:
+            return None, f"build_agent: {describe(failure)}"
+        return agent, None
+
     @staticmethod
-    def _order(asked: Order) -> int | None:
-        return DEFAULT_ORDER if asked == "agent" else as_order(asked)
+    def _order(asked: Order, agent: str) -> int | None:
+        return named_order(agent) if asked == "agent" else as_order(asked)
 
 
 def live_file(folder: Path, job: GameJob) -> Path:
@@ -148,17 +172,6 @@ def lost(job: GameJob, options: GameOptions, reason: str, guilty: Side | None) -
         events=(Event(step=0, what="forfeit", who=guilty, why=reason),),
     )
     return Game(record, np.empty((0, 0), dtype=np.float32))
-
-
-def _build_agent(name: str, env_info: dict[str, Any], agent_id: int, order: int | None, asked: Order) -> Build:
-    """An agent with its own copy of `env_info`, or the reason why there is none."""
-    from airhockey.agents import AGENTS, build_agent
-
-    kwargs = {"interpolation_order": order} if asked != "agent" and name in AGENTS else {}
-    try:
-        return build_agent(name, copy.deepcopy(env_info), agent_id=agent_id, **kwargs), None
-    except agent_failures() as failure:
-        return None, f"build_agent: {describe(failure)}"
 
 
 def _stop(agents: tuple[Any, Any], watch: Watch) -> None:

@@ -30,6 +30,9 @@ class GameOptions(msgspec.Struct, frozen=True, kw_only=True):
         clock: What the time of `draw_action` is measured with; "cpu" does not mind a busy machine.
         variant: What becomes of a non-deployable player, see `VARIANTS`.
         edition: Rule edition.
+        isolate: Where agents live; "auto" is with the evaluator for our own, elsewhere for submissions, as far away as the
+            machine can have them.
+        patience: Longest time for an answer of an agent that lives elsewhere, in [s].
     """
 
     steps: int = 45000
@@ -37,6 +40,8 @@ class GameOptions(msgspec.Struct, frozen=True, kw_only=True):
     clock: Literal["wall", "cpu"] = "cpu"
     variant: Variant = "package"
     edition: str = "2023"
+    isolate: Literal["auto", "none", "process", "sandbox"] = "none"
+    patience: float = 60.0
 
 
 class GameJob(msgspec.Struct, frozen=True):

@@ -80,7 +80,7 @@ def killed_after(count: int, folder: Path, command: list[str]) -> None:
 def test_killed_twice_resumed_and_extended(entries: tuple[Entry, ...], straight: Any, tmp_path: Path) -> None:
     folder = tmp_path / "run"
     out = ["--out", str(folder)]
-    begin = [*HOCKEY, *typed(entries[:4]), "--steps", str(STEPS), "--seed", "2", *out]
+    begin = [*HOCKEY, *typed(entries[:4]), "--steps", str(STEPS), "--seed", "2", "--isolate", "none", *out]
     killed_after(2, folder, begin)
     killed_after(len(read_games(folder)) + 2, folder, [*HOCKEY, "--resume", *out])
     assert len(read_games(folder)) < 12

@@ -1,0 +1,19 @@
+"""Constraints as functions of the joints."""
+
+from .constraints import (
+    Constraint,
+    ConstraintList,
+    EndEffectorConstraint,
+    JointPositionConstraint,
+    JointVelocityConstraint,
+    LinkConstraint,
+)
+
+__all__ = [
+    "Constraint",
+    "ConstraintList",
+    "EndEffectorConstraint",
+    "JointPositionConstraint",
+    "JointVelocityConstraint",
+    "LinkConstraint",
+]

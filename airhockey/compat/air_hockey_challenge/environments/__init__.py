@@ -1,0 +1,1 @@
+"""The base environments by their official names."""

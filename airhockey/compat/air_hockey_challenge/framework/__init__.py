@@ -1,0 +1,6 @@
+"""What agents derive from and what they train in."""
+
+from .agent_base import AgentBase
+from .air_hockey_challenge_wrapper import AirHockeyChallengeWrapper
+
+__all__ = ["AgentBase", "AirHockeyChallengeWrapper"]

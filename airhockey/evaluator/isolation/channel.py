@@ -1,0 +1,94 @@
+"""The memory that evaluator and agent share, and the two pipes by which they wake each other.
+
+    offset      what                                      written by
+    0           length of the text, in bytes              whoever speaks
+    8           number of dimensions of the action        guest
+    16          its shape, up to 4 numbers                guest
+    64          the observation                           host
+    4096        the action                                guest
+    65536       text: JSON                                whoever speaks
+
+A word on a pipe is one byte. The host believes nothing that it reads: it copies, and checks. The memory's size is sealed,
+or a guest that truncated it would kill the host.
+"""
+
+import fcntl
+import json
+import mmap
+import os
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from airhockey.evaluator.isolation.failures import AgentError
+
+Array = NDArray[np.float64]
+
+BUILD, EPISODE, ACT, STOP = b"B", b"E", b"A", b"S"
+HELLO, DONE, RAISED, BAD_ACTION = b"H", b"K", b"X", b"N"
+
+OBSERVATION, ACTION, TEXT, SIZE = 64, 4096, 65536, 131072
+MAX_DIMENSIONS = 4
+MAX_ACTION = (TEXT - ACTION) // 8
+_SEALS = 0x1 | 0x2 | 0x4  # F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW
+_F_ADD_SEALS = 1033
+
+
+def new_memory() -> int:
+    """A file descriptor of fresh shared memory, of a size that nobody can change."""
+    descriptor = os.memfd_create("airhockey", os.MFD_CLOEXEC | os.MFD_ALLOW_SEALING)
+    os.ftruncate(descriptor, SIZE)
+    fcntl.fcntl(descriptor, _F_ADD_SEALS, _SEALS)
+    return descriptor
+
+
+class Memory:
+    """One side's view of the shared memory."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._map = mmap.mmap(descriptor, SIZE)
+        self._header = np.frombuffer(self._map, np.int64, 2 + MAX_DIMENSIONS)
+        self._observation = np.frombuffer(self._map, np.float64, (ACTION - OBSERVATION) // 8, OBSERVATION)
+        self._action = np.frombuffer(self._map, np.float64, MAX_ACTION, ACTION)
+
+    def write_observation(self, observation: Array) -> None:
+        """Put an observation where the guest reads it. Shape (d,)."""
+        self._observation[: observation.size] = observation
+
+    def read_observation(self, size: int) -> Array:
+        """A copy of the observation. Shape (size,)."""
+        return self._observation[:size].copy()
+
+    def write_action(self, action: Array) -> None:
+        """Put an action where the host reads it. At most 4 dimensions and `MAX_ACTION` entries."""
+        self._header[1] = action.ndim
+        self._header[2 : 2 + action.ndim] = action.shape
+        self._action[: action.size] = action.reshape(-1)
+
+    def read_action(self) -> Array:
+        """A copy of the action; raises `AgentError` for a header that describes none."""
+        dimensions, *sizes = self._header[1:].tolist()
+        shape = tuple(sizes[:dimensions]) if 0 <= dimensions <= MAX_DIMENSIONS else (-1,)
+        count = 1
+        for size in shape:
+            count *= size
+        if min(shape, default=1) < 0 or count > MAX_ACTION:
+            raise AgentError(f"the shared memory holds no action: shape {shape}")
+        return self._action[:count].copy().reshape(shape)
+
+    def write_text(self, content: Any) -> None:
+        """Put something that JSON knows where the other side reads it."""
+        text = json.dumps(content).encode()
+        if len(text) > SIZE - TEXT:
+            raise AgentError(f"a message of {len(text)} bytes is too long")
+        self._map[TEXT : TEXT + len(text)] = text
+        self._header[0] = len(text)
+
+    def read_text(self) -> Any:
+        """What the other side put there; raises `AgentError` where that is not JSON."""
+        length = min(max(int(self._header[0]), 0), SIZE - TEXT)
+        try:
+            return json.loads(self._map[TEXT : TEXT + length])
+        except (ValueError, RecursionError):
+            raise AgentError("its message is not JSON") from None

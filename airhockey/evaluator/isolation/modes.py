@@ -1,0 +1,66 @@
+"""How far an agent is kept apart: as asked, or as far as this machine can."""
+
+from dataclasses import dataclass
+from typing import Final, Literal
+
+from airhockey.agents.submission import is_submission
+from airhockey.errors import ConfigurationError, unknown
+from airhockey.evaluator.isolation.launch import why_no_sandbox
+
+Mode = Literal["none", "process", "sandbox"]
+MODES: Final = ("none", "process", "sandbox")
+REMOTE: Final = "tcp://"
+_UNPROTECTED: Final = "it can read and write your files, use the network, start processes without end and send signals"
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A mode, and what the user should know about it.
+
+    Attributes:
+        warning: What is not protected; None if nothing is to be said.
+    """
+
+    mode: Mode
+    warning: str | None = None
+
+
+def choose(agent: str, asked: str | None = None) -> Choice:
+    """The mode for an agent.
+
+    Args:
+        agent: A name of the registry, a path, or tcp://HOST:PORT.
+        asked: What the user wants; None for: our own agents here, others in a sandbox, or else in a process.
+
+    Raises:
+        ConfigurationError: There is no such mode, or no sandbox on this machine.
+    """
+    if asked is not None and asked not in MODES:
+        raise unknown("isolation", asked, MODES)
+    if agent.startswith(REMOTE):
+        return Choice("none")
+    if asked == "sandbox":
+        why = why_no_sandbox()
+        if why is not None:
+            raise ConfigurationError(
+                f"there is no sandbox here: {why}; --isolate process needs nothing, but protects less"
+            )
+        return Choice("sandbox")
+    if asked == "process":
+        return Choice("process")
+    if asked == "none" or not is_submission(agent):
+        return Choice("none")
+    why = why_no_sandbox()
+    if why is None:
+        return Choice("sandbox")
+    return Choice("process", f"{agent!r} runs in a process of its own, but without a sandbox ({why}): {_UNPROTECTED}")
+
+
+def host_and_port(address: str) -> tuple[str, int]:
+    """What tcp://HOST:PORT names; raises `ConfigurationError`."""
+    host, _, port = address.removeprefix(REMOTE).rstrip("/").rpartition(":")
+    if not host or not port.isdigit() or not 0 < int(port) < 65536:
+        raise ConfigurationError(
+            f"{address!r} is no address of an agent; write tcp://HOST:PORT, as in tcp://127.0.0.1:8080"
+        )
+    return host.strip("[]"), int(port)

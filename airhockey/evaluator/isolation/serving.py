@@ -1,0 +1,75 @@
+"""An agent behind a TCP port, seen from the agent: the counterpart of `remote.py`, one player at a time."""
+
+import socket
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from airhockey.errors import ConfigurationError
+from airhockey.evaluator.isolation.remote import ACT, PREPROCESS, RESET, RESET_DONE
+
+LOOPBACK = "127.0.0.1"
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """A socket that waits for players; raises `ConfigurationError` where there is none to be had."""
+    try:
+        return socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
+    except OSError as error:
+        raise ConfigurationError(f"cannot listen on {host}:{port}: {error.strerror or error}") from None
+
+
+def serve(waiting: socket.socket, agent: Any, size: int, games: int | None = None) -> None:
+    """Answer one connection after the other.
+
+    Args:
+        waiting: From `listen`.
+        agent: Has `episode_start`, `draw_action` and perhaps `preprocessors`.
+        size: Number of entries of an observation.
+        games: After how many connections to end; None for never.
+    """
+    while games is None or games > 0:
+        connection, _ = waiting.accept()
+        with connection:
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            try:
+                answer_all(connection, agent, size)
+            except OSError:
+                continue  # it hung up in the middle
+        games = None if games is None else games - 1
+
+
+def answer_all(connection: socket.socket, agent: Any, size: int) -> None:
+    """Answer requests until the other side hangs up or says something else."""
+    answers: dict[bytes, Callable[[], bytes]] = {}
+
+    def observation() -> Any:
+        return np.frombuffer(_receive(connection, 8 * size)).copy()
+
+    def reset() -> bytes:
+        agent.episode_start()
+        return RESET_DONE
+
+    def preprocess() -> bytes:
+        seen = observation()
+        for preprocessor in getattr(agent, "preprocessors", ()):
+            seen = preprocessor(seen)
+        return np.asarray(seen, dtype=np.float64).tobytes()
+
+    def act() -> bytes:
+        return np.asarray(agent.draw_action(observation()), dtype=np.float64).tobytes()
+
+    answers = {RESET: reset, PREPROCESS: preprocess, ACT: act}
+    while (word := connection.recv(1)) in answers:
+        connection.sendall(answers[word]())
+
+
+def _receive(connection: socket.socket, size: int) -> bytes:
+    received = b""
+    while len(received) < size:
+        chunk = connection.recv(size - len(received))
+        if not chunk:
+            raise ConnectionError("hung up")
+        received += chunk
+    return received

@@ -1,0 +1,101 @@
+"""`hockey new`, `validate` and `package`, and the submissions of this repository."""
+
+import importlib.util
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from submission_examples import SUBMISSIONS
+
+from airhockey.agents.packaging.packing import pack
+from airhockey.evaluator.isolation.limits import Limits
+from airhockey.evaluator.validation import Trial, try_out, validate
+
+LIMITS = Limits(start=60.0, patience=20.0)
+
+
+@pytest.mark.parametrize("name", ["template", "thesis", "baseline"])
+def test_our_submissions_are_packed_validated_and_played(name: str, tmp_path: Path) -> None:
+    packed = pack(SUBMISSIONS / name, tmp_path / "packed.zip")
+    verdict = validate(packed.path, "none", LIMITS, steps=4)
+    assert [problem for problem in verdict.problems if "ms" not in problem.what] == []
+    assert {trial.env for trial in verdict.trials} >= {"7dof-hit", "7dof-defend", "7dof-prepare", "tournament"}
+    assert all(trial.steps == 4 for trial in verdict.trials)
+
+
+def test_our_packed_agent_plays_in_the_sandbox(sandbox: None, tmp_path: Path) -> None:
+    packed = pack(SUBMISSIONS / "baseline", tmp_path / "packed.zip")
+    outcome = try_out(str(packed.path), "7dof-hit", "sandbox", LIMITS, 20)
+    assert isinstance(outcome, Trial) and outcome.steps == 20 and outcome.start < 30.0
+
+
+@pytest.mark.parametrize("name", ["template", "thesis"])
+def test_our_agents_offer_what_the_official_evaluator_calls(name: str) -> None:
+    code = f"""
+import sys
+from airhockey import compat
+compat.install()
+sys.path.insert(0, {str(SUBMISSIONS / name)!r})
+from air_hockey_challenge.framework import AirHockeyChallengeWrapper
+from air_hockey_agent.agent_builder import build_agent
+from mushroom_rl.core import Core
+env = AirHockeyChallengeWrapper("7dof-hit", interpolation_order=3)
+agent = build_agent(env.env_info)
+core = Core(agent, env)
+dataset = core.evaluate(n_steps=5, quiet=True)
+assert len(dataset) == 5 and agent.next_action is None
+agent.stop()
+"""
+    if importlib.util.find_spec("mushroom_rl") is None:
+        pytest.skip("needs the extra mushroom")
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+
+
+def problems_of(folder: str | Path, limits: Limits = LIMITS) -> list[tuple[str, str]]:
+    verdict = validate(Path(folder), "process", limits, steps=5)
+    return [(problem.what, problem.remedy) for problem in verdict.problems]
+
+
+def test_every_problem_comes_with_its_remedy(bad: Callable[..., str], tmp_path: Path) -> None:
+    (what, remedy), *_ = problems_of(tmp_path)
+    assert "agent_builder.py" in what and "hockey new" in remedy
+    folder = Path(bad(importing="import nowhere_to_be_found"))
+    (folder / "submission.yaml").write_text("name: bad\ntasks: [3dof-hit]\npackages: [nowhere-to-be-found>=2]\n")
+    (missing, install), (failed, _) = problems_of(folder)
+    assert "nowhere-to-be-found>=2" in missing and install == "pip install 'nowhere-to-be-found>=2'"
+    assert "pip install nowhere_to_be_found" in failed
+    folder = Path(bad("return action[0]"))
+    (folder / "submission.yaml").write_text("name: bad\ntasks: [3dof-hit]\n")
+    ((what, remedy),) = problems_of(folder)
+    assert "shape (3,)" in what and "shape" in remedy
+    folder = Path(bad("while True: pass"))
+    (folder / "submission.yaml").write_text("name: bad\ntasks: [3dof-hit]\ninterpolation_order: 3\n")
+    (folder / "agent_config.yml").write_text("interpolation_order: 3\n")
+    ((what, remedy),) = problems_of(folder, Limits(start=60.0, patience=0.5))
+    assert "did not answer" in what and "--patience" in remedy
+
+
+def hockey(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "airhockey.cli", *arguments]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=os.environ | {"COLUMNS": "200"})
+
+
+def test_the_commands_from_an_idea_to_a_judged_entry(tmp_path: Path) -> None:
+    assert hockey(tmp_path, "new", "mine").returncode == 0
+    (tmp_path / "mine" / "submission.yaml").write_text("name: mine\ntasks: [3dof-hit]\n")
+    packed = hockey(tmp_path, "package", "mine")
+    assert packed.returncode == 0 and "mine-0.1.0.zip" in packed.stdout
+    verdict = hockey(tmp_path, "validate", "mine-0.1.0.zip", "--steps", "5", "--json", "--isolate", "process")
+    assert verdict.returncode == 0 and json.loads(verdict.stdout)["problems"] == []
+    arguments = ["--env", "3dof-hit", "--agent", "mine-0.1.0.zip", "--episodes", "2", "--jobs", "1"]
+    arguments += ["--json", "--quiet", "--isolate", "process"]
+    judged = hockey(tmp_path, "evaluate", *arguments)
+    assert judged.returncode == 0 and json.loads(judged.stdout)["agent_errors"] == 0
+    again = hockey(tmp_path, "new", "mine")
+    assert again.returncode == 2 and len(again.stderr.splitlines()) == 1
+    refused = hockey(tmp_path, "validate", "nothing")
+    assert refused.returncode == 2

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from airhockey.agents.baseline.aiming import after_strike, mirrored, strike_normal
-from airhockey.agents.baseline.flight import FLIGHT_STEP, fly
+from airhockey.agents.baseline.flight import FLIGHT_STEP, coast, fly
 from airhockey.agents.baseline.opponent import OpponentTrack, figure_of_eight
 from airhockey.agents.baseline.parameters import smash_parameters
 from airhockey.agents.baseline.rules import Rules, make_rules
@@ -14,6 +14,7 @@ from airhockey.agents.baseline.shots import Shot, judge, room_speed, turned
 from airhockey.agents.baseline.strike import run_up
 from airhockey.agents.control.parameters import control_parameters
 from airhockey.agents.control.workspace import Workspace
+from airhockey.agents.estimation.motion import advance
 from airhockey.agents.table import CONTACT, HALF_LENGTH, to_robot
 from airhockey.envs.specs import IIWA
 
@@ -160,3 +161,13 @@ def test_a_restless_opponent_is_expected_where_it_is() -> None:
         track.update(seen, step)
     assert not track.swinging
     assert track.predict(np.array([1.0]))[0] == pytest.approx(seen)
+
+
+@pytest.mark.parametrize("velocity", [[0.7, -0.4], [-0.8, 0.9]])
+def test_the_puck_coasts_as_it_does_in_small_pieces(rules: Rules, velocity: list[float]) -> None:
+    puck = np.array([-0.6, 0.2, *velocity, 1.0])
+    path = coast(puck, 0.02, 100, rules.motion)
+    for k in range(100):
+        expected = path[k].copy()
+        advance(expected, 0.02, rules.motion)
+        assert path[k + 1] == pytest.approx(expected, abs=1e-12)

@@ -115,6 +115,9 @@ def situation(x: float, velocity: tuple[float, float], tip: tuple[float, float] 
         ("hit", "prepare", False, False, False, -0.5, -0.3, "prepare"),
         ("hit", "prepare", False, False, True, -0.5, 0.0, "smash"),
         ("tournament", "ready", True, False, False, 0.5, -1.5, "defend"),
+        ("tournament", "ready", True, False, True, 0.5, -1.5, "defend"),  # first stop it
+        ("tournament", "ready", True, False, False, 0.5, -2.5, "repel"),
+        ("tournament", "defend", False, False, False, 0.5, -2.5, "defend"),  # no change of mind on the way
         ("tournament", "ready", True, False, False, 0.5, 0.5, "ready"),
         ("tournament", "ready", True, False, False, 0.5, -0.05, "ready"),  # it will not come over
         ("defend", "ready", True, False, True, -0.5, 0.0, "defend"),

@@ -9,6 +9,7 @@ from airhockey.agents.base import AgentBase, Array
 from airhockey.agents.baseline.defend import Defend
 from airhockey.agents.baseline.prepare import Prepare
 from airhockey.agents.baseline.ready import Ready
+from airhockey.agents.baseline.repel import Repel
 from airhockey.agents.baseline.skill import Situation, Skill
 from airhockey.agents.baseline.smash import Smash
 from airhockey.agents.baseline.tactics import choose
@@ -51,6 +52,7 @@ class BaselineAgent(AgentBase):
             "smash": self._smash,
             "ready": Ready(env_info),
             "defend": Defend(env_info),
+            "repel": Repel(env_info),
             "prepare": Prepare(env_info),
         }
         self._warm_up()

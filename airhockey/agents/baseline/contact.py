@@ -36,8 +36,8 @@ def redirecting(state: Array, leaving: Array, grip: bool) -> tuple[Array, Array]
         In [m] and [m]/[s]. Shapes (2,), (2,).
     """
     change = leaving - state[2:4]
-    size = max(np.hypot(change[0], change[1]), 1e-9)
-    normal = change / size
+    size = np.hypot(change[0], change[1])
+    normal = change / size if size > 1e-6 else np.array([1.0, 0.0])
     before = state[2] * normal[0] + state[3] * normal[1]
     velocity = (before + size / (1.0 + RESTITUTION)) * normal
     if grip:

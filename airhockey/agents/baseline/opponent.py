@@ -76,7 +76,7 @@ class OpponentTrack:
         if self._expected:
             mean, spread = figure_of_eight(RATE * self._dt * step), np.full((5, 2), EXPECTED_SPREAD)
         fit = _fit(self._seen[-count:], self._rate * self._dt, mean, spread)
-        if fit[1] > NOISE:
+        if fit[1] > (BELIEVED if self._expected else NOISE):
             other = float(RATES[self._count % len(RATES)])
             mean[1:] = 0.0
             trial = _fit(self._seen[-count:], other * self._dt, mean, SPREAD)

@@ -15,6 +15,8 @@ FLIGHT = 2.0
 """Longest flight after the longest wait for which the opponent is predicted, in [s]."""
 GOOD = 0.85
 """Value of a shot beyond which the search for a better one slows down."""
+BEYOND = 0.5
+"""How much later another shot is then looked for, in [s]."""
 LENIENCE = 0.1
 """By how much the shot pursued may be late, in [s]: the estimate of the way is cautious, and what is under way should go on."""
 _NONE = Shot(0.0, 0.0, 0.0, 0.0, 0.0, np.zeros(2), np.zeros(2))
@@ -55,8 +57,11 @@ class ShotPlanner:
         p = self._parameters
         horizon = min(p.longest_wait, time_left - p.flight)
         best = self._best._replace(wait=self._best.wait - self._dt) if self._best.value > 0.0 else _NONE
-        count = p.candidates if best.value < GOOD else p.candidates // 3
-        path: Array = coast(situation.puck.state, self._dt, round(p.longest_wait / self._dt), self._rules.motion)
+        count = p.candidates
+        if best.value > GOOD:
+            count, horizon = count // 3, min(horizon, best.wait + BEYOND)
+        steps = max(1, int(np.ceil(max(horizon, best.wait) / self._dt)))
+        path: Array = coast(situation.puck.state, self._dt, steps, self._rules.motion)
         self._best = search(
             path, self._dt, situation.tip,
             opponent.predict(self._times), 0.0 if opponent.swinging else p.opponent_doubt,

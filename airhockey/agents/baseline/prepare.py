@@ -54,6 +54,7 @@ class PrepareParameters:
         least_tries, most_tries: So many before a stroke is chosen; so many after which the best one must do.
         enough: Value of a stroke that needs no more thought.
         worthless: Value below which a stroke is not played.
+        despair: How much less will do after every search in vain.
         travel_speed, travel_acceleration: On the way round the puck, in [m]/[s] and [m]/[s²].
         gap: Between mallet and puck on that way, in [m].
         arrived: Distance to the beginning of a stroke that will do, in [m].
@@ -74,6 +75,7 @@ class PrepareParameters:
     most_tries: int
     enough: float
     worthless: float
+    despair: float
     travel_speed: float
     travel_acceleration: float
     gap: float
@@ -130,7 +132,7 @@ class Prepare:
         self._restart()
 
     def _restart(self) -> None:
-        self.phase, self._well = "wait", False
+        self.phase, self._well, self._rounds = "wait", False, 0
         self._rng = np.random.default_rng(self._parameters.seed)
         self._forget()
 
@@ -180,6 +182,7 @@ class Prepare:
         if self._watch.ready and not self._well and np.hypot(*self._watch.motion()[1]) < p.still:
             self._forget()
             self._look(p.ahead)
+            self._rounds = 0
             self._now = self._goal._replace(horizon=float(np.clip(left - p.ahead, 0.5, p.goal.horizon)))
             self.phase = "think"
         return self._keep_clear(situation)
@@ -199,9 +202,10 @@ class Prepare:
 
     def _decided(self) -> bool:
         p = self._parameters
-        if self._tried >= p.most_tries and self._value < p.worthless:
+        if self._tried >= p.most_tries and self._value < p.worthless - p.despair * self._rounds:
             self._forget()
-            self._now = self._now._replace(doubt=0.5 * self._now.doubt)  # rather a risky stroke than none
+            self._rounds += 1  # rather a risky stroke than none
+            self._now = self._now._replace(doubt=0.5 * self._now.doubt)
             return False
         return self._tried >= p.most_tries or (self._tried >= p.least_tries and self._value >= p.enough)
 

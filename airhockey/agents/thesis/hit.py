@@ -51,7 +51,8 @@ class HitParameters:
         across: How much of the puck's own motion across the line is corrected for; less than 1, since a contact takes
             time.
         gap: Least distance from the opponent's mallet at which the puck shall pass it, in [m]; 0 does not look.
-        patience: Steps that the opponent's gap is waited for.
+        patience: Steps that a gap is waited for beside an opponent that repeats itself.
+        hesitation: Steps that a gap is waited for beside another one.
         slow_down: Share of its velocity that the end-effector keeps in each step of the slow-down.
         struck_speed: Of the puck, which shows that it was hit, in [m]/[s].
         longest_strike: Steps after which an acceleration is given up.
@@ -74,6 +75,7 @@ class HitParameters:
     across: float
     gap: float
     patience: float
+    hesitation: float
     slow_down: float
     struck_speed: float
     longest_strike: float
@@ -173,7 +175,8 @@ class HitPolicy:
         target = cartesian(puck, Polar(here.beta + side * turn, radius), gamma)
         run_up = stand_off + p.run_up - p.stand_off
         ready = self.phase == "adjustment" and abs(off) < p.aligned and here.radius < run_up
-        if ready and (self._gap(view) or self._t_phase > p.patience):
+        patience = p.patience if self._opponent.repeats else p.hesitation
+        if ready and (self._t_phase > patience or self._gap(view)):
             self._enter("acceleration")
         end = cartesian(puck, Polar(180.0, stand_off), gamma)
         longest = min(p.longest_step, stoppable_step(view.tip, end, p.acceleration, view.dt))

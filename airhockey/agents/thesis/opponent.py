@@ -35,17 +35,23 @@ class OpponentWatch:
         """Forget everything."""
         self._seen: list[Array] = []
         self._fit: Array | None = None
+        self._stale = False
 
     def see(self, position: Array | None) -> None:
         """Take the opponent's position of this step, in [m], shape (2,); None where there is no opponent."""
         if position is not None:
             self._seen = [*self._seen[1 - self._window :], position]
-            self._fit = self._fitted()
+            self._stale = True
 
     @property
     def ready(self) -> bool:
         """Whether it has been watched for long enough to tell whether it repeats itself."""
         return len(self._seen) >= self._shortest
+
+    @property
+    def repeats(self) -> bool:
+        """Whether it has not been watched for long enough, or does repeat itself."""
+        return not self.ready or self._latest_fit() is not None
 
     def predict(self, ahead: float) -> Array | None:
         """Where the mallet will be after a time in [s]; None without an opponent. Shape (2,)."""
@@ -53,9 +59,15 @@ class OpponentWatch:
 
     def at(self, ahead: float) -> Array:
         """The same where there is an opponent. Shape (2,)."""
-        if self._fit is None:
+        fit = self._latest_fit()
+        if fit is None:
             return np.asarray(np.mean(self._seen[-5:], axis=0))
-        return np.asarray(self._basis(np.array([ahead]))[0] @ self._fit)
+        return np.asarray(self._basis(np.array([ahead]))[0] @ fit)
+
+    def _latest_fit(self) -> Array | None:
+        if self._stale:  # most of the time nobody asks
+            self._fit, self._stale = self._fitted(), False
+        return self._fit
 
     def _basis(self, times: Array) -> Array:
         phase = self._rate * times

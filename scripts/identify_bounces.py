@@ -27,7 +27,7 @@ def shoot(env: envs.Environment, axis: int, state: Array, steps: int = 60) -> Ar
     base = env.base_observation
     base[:6] = [state[0], state[1], 0.0, state[2], state[3], state[4]]
     env.reset(state=base)
-    joints = env.simulation.readings.base[6 : 6 + env.env_info["robot"]["n_joints"]].copy()
+    joints = env.base_observation[6 : 6 + env.env_info["robot"]["n_joints"]]
     action, states, after = np.stack([joints, np.zeros_like(joints)]), [state], 0
     for _ in range(steps):
         env.step(action)

@@ -1,5 +1,6 @@
 """Small agents as submission folders, and short runs of them."""
 
+import signal
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -9,6 +10,9 @@ from outcomes import ENV
 
 from airhockey.evaluator import Options
 from submissions import make_submission
+
+# A shell that starts the tests in the background has them ignore Ctrl-C, which some of them send.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ import click
 import msgspec
 
 from airhockey.agents import AGENTS
-from airhockey.commands._isolation import isolation_of
+from airhockey.commands._isolation import isolation_of, say_what_is_not_protected
 from airhockey.commands._progress import progress
 from airhockey.commands._tables import print_result
 from airhockey.envs.disturbances import available
@@ -43,6 +43,8 @@ def run(given: Mapping[str, Any], typed: set[str]) -> int:
     engine = engine_of(given["cluster"], given["jobs"] or cpus())
     folder = _open_run(given, typed)
     options = folder.manifest.options
+    if not given["resume"]:
+        say_what_is_not_protected((options.agent,), given["isolate"])
     played: TaskResult | RunResult | None = None
     with contextlib.suppress(KeyboardInterrupt), stdout_for_the_result():
         with progress(options, folder.records, quiet=given["quiet"] or given["as_json"]) as on_episode:

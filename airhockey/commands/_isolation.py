@@ -1,6 +1,6 @@
 """Options for agents that live apart, shared by every command that plays."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 import rich_click as click
@@ -34,10 +34,17 @@ def isolation_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def isolation_of(agent: str, asked: str | None) -> "Mode":
-    """Where an agent is to live; what is then not protected is said on the standard error."""
+    """Where an agent is to live."""
     from airhockey.evaluator.isolation.modes import choose
 
-    choice = choose(agent, asked)
-    if choice.warning is not None:
-        click.echo(f"hockey: warning: {choice.warning}", err=True)
-    return choice.mode
+    return choose(agent, asked).mode
+
+
+def say_what_is_not_protected(agents: Iterable[str], asked: str | None) -> None:
+    """Warn on the standard error, once everything else about the command was found to be right."""
+    from airhockey.evaluator.isolation.modes import choose
+
+    for agent in dict.fromkeys(agents):
+        warning = choose(agent, asked).warning
+        if warning is not None:
+            click.echo(f"hockey: warning: {warning}", err=True)

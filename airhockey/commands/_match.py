@@ -12,7 +12,7 @@ import msgspec
 from airhockey.agents import AGENTS
 from airhockey.commands._evaluation import AGENT_FAILED, INTERRUPTED, RUNS, cpus, from_anywhere, stdout_for_the_result
 from airhockey.commands._game_tables import print_match
-from airhockey.commands._isolation import isolation_of
+from airhockey.commands._isolation import say_what_is_not_protected
 from airhockey.commands._live import games_live
 from airhockey.envs.disturbances import available
 from airhockey.evaluator.cluster import engine_of
@@ -43,6 +43,8 @@ def run(given: Mapping[str, Any], typed: set[str]) -> int:
     """
     engine = engine_of(given["cluster"], min(given["jobs"] or cpus(), given["games"]), isolated=True)
     folder = _open(given, typed)
+    if not given["resume"]:
+        say_what_is_not_protected((folder.manifest.options.home, folder.manifest.options.away), given["isolate"])
     games, before = folder.manifest.options.games, len(folder.records)
     quiet = given["quiet"] or given["as_json"]
     result: MatchResult | None = None
@@ -106,8 +108,6 @@ def _open(given: Mapping[str, Any], typed: set[str]) -> GameFolder[MatchManifest
     )
     if given["resume"]:
         return take_up_match(Path(given["out"]), repeated(options, options.game, (*sides, *_OWN), typed | sides))
-    for agent in dict.fromkeys((options.home, options.away)):
-        isolation_of(agent, given["isolate"])
     if given["out"] is not None:
         return begin_match(options, Path(given["out"]))
     name = f"match-{Path(options.home).name}-{Path(options.away).name}-s{options.seed}"

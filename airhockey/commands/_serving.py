@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from airhockey.agents import AGENTS
-from airhockey.commands._isolation import isolation_of
+from airhockey.commands._isolation import isolation_of, say_what_is_not_protected
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.workers import ONE_THREAD
 
@@ -27,6 +27,7 @@ def run(given: Mapping[str, Any]) -> None:
     path = Path(name).expanduser()
     agent_name = name if name in AGENTS or not path.exists() else str(path.resolve())
     check_agent(agent_name, (given["env"],))
+    say_what_is_not_protected((agent_name,), given["isolate"])
     order = wanted_order(Path(agent_name)) if is_submission(agent_name) else 3
     env = envs.make(given["env"], order)
     waiting = listen(given["host"], given["port"])

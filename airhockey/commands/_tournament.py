@@ -13,7 +13,7 @@ import yaml
 from airhockey.agents import AGENTS
 from airhockey.commands._evaluation import AGENT_FAILED, INTERRUPTED, cpus, from_anywhere, stdout_for_the_result
 from airhockey.commands._game_tables import output, print_standings
-from airhockey.commands._isolation import isolation_of
+from airhockey.commands._isolation import say_what_is_not_protected
 from airhockey.commands._live import games_live
 from airhockey.commands._match import GAME_OPTIONS, game_options_of, new_folder, repeated
 from airhockey.errors import ConfigurationError
@@ -57,6 +57,8 @@ def run(given: Mapping[str, Any], typed: set[str]) -> int:
         return 0
     engine = engine_of(given["cluster"], given["jobs"] or cpus(), isolated=True)
     folder = _open(given, typed)
+    if not given["resume"]:
+        say_what_is_not_protected((entry.agent for entry in folder.manifest.options.entries), given["isolate"])
     played = _play(folder, engine, given)
     if played is None:
         click.echo(
@@ -111,8 +113,6 @@ def _open(given: Mapping[str, Any], typed: set[str]) -> GameFolder[TournamentMan
         phases = given["phases"] if "phases" in typed else None
         return take_up_tournament(Path(given["out"]), entries, asked, phases, replacements)
     options = msgspec.structs.replace(options, entries=with_replacements(entries, replacements))
-    for entry in options.entries:
-        isolation_of(entry.agent, given["isolate"])
     out = Path(given["out"]) if given["out"] is not None else new_folder(f"tournament-s{options.seed}")
     return begin_tournament(options, out)
 

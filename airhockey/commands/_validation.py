@@ -7,7 +7,7 @@ from typing import Any
 import click
 import msgspec
 
-from airhockey.commands._isolation import isolation_of
+from airhockey.commands._isolation import isolation_of, say_what_is_not_protected
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.workers import ONE_THREAD
 
@@ -24,6 +24,7 @@ def run(given: Mapping[str, Any]) -> int:
     if not path.exists():
         raise ConfigurationError(f"there is no {str(path)!r}; name a submission's folder or archive")
     mode = isolation_of(str(path.resolve()), given["isolate"])
+    say_what_is_not_protected((str(path.resolve()),), given["isolate"])
     patience = given["patience"]
     limits = Limits(patience=patience, start=max(patience, Limits.start))
     verdict = validate(path, mode, limits, given["steps"])

@@ -1,5 +1,8 @@
 """The puck's motion, filter and prediction against the simulator, whose true state they must match."""
 
+import importlib.util
+import pathlib
+
 import numpy as np
 import pytest
 
@@ -52,6 +55,17 @@ def test_a_bounce_is_the_simulators_but_for_the_chance_in_its_restitution(quiet,
     np.testing.assert_allclose(state[2], true[turned, 2], atol=0.03 * speed)  # the tangential part is exact
     np.testing.assert_allclose(state[4], true[turned, 4], atol=0.5)
     np.testing.assert_allclose(state[3], true[turned, 3], atol=0.3 * speed)  # e scatters from 0.70 to 0.97
+
+
+def test_the_constants_are_what_the_script_identifies(quiet):
+    path = pathlib.Path(__file__).parents[2] / "scripts" / "identify_bounces.py"
+    spec = importlib.util.spec_from_file_location("identify_bounces", path)
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    found = script.identify(quiet, bounces=60, seed=1)
+    assert found["restitution"] == pytest.approx(puck_motion().restitution, abs=0.03)
+    assert found["slip_impulse"] == pytest.approx(puck_motion().slip_impulse, abs=0.003)
+    assert found["rim_give"] == pytest.approx(puck_motion().rim_give, abs=0.001)
 
 
 def test_a_bounce_conserves_what_the_impulse_cannot_change():

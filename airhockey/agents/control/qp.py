@@ -99,7 +99,7 @@ class OsqpSolver:
             u=np.maximum(upper, lower),
             **self._settings,
         )
-        result = problem.solve()
+        result = problem.solve(raise_error=False)
         return np.asarray(result.x) if result.info.status == "solved" else None
 
 

@@ -1,5 +1,6 @@
 """Every bad submission ends in a verdict for itself alone: the evaluator lives, and reads why."""
 
+import contextlib
 import os
 import re
 import signal
@@ -175,12 +176,9 @@ def test_last_steps_array_is_its_own(env: Any, sandbox: None, bad: Callable[...,
 def test_a_message_to_the_evaluator_is_data(env: Any, sandbox: None, bad: Callable[..., str]) -> None:
     spoof = "import gc, fcntl\nfor f in range(3, 20):\n    try: os.write(f, b'!')\n    except OSError: pass"
     agent = build_agent(bad(spoof), env, mode="sandbox", limits=LIMITS)
-    try:  # whether the false answer comes before the true one is a race; either way it is checked like any answer
+    # Whether the false answer comes before the true one is a race; either way it is checked like any answer.
+    with contextlib.closing(agent), contextlib.suppress(AgentError):
         assert np.isfinite(play(agent, env)).all()
-    except AgentError as failure:
-        assert str(failure)
-    finally:
-        agent.close()
     assert gone(agent)
 
 

@@ -9,15 +9,16 @@ with g identified from the simulator (`SmashParameters.gain`).
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from airhockey.agents.compiling import compiled
 
 Array = NDArray[np.float64]
 
 _ITERATIONS = 8
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def after_strike(puck_velocity: Array, normal: Array, speed: float, gain: float) -> Array:
     """The puck's velocity after a strike, in [m]/[s].
 
@@ -34,7 +35,7 @@ def after_strike(puck_velocity: Array, normal: Array, speed: float, gain: float)
     return np.asarray(puck_velocity + gain * max(speed - along, 0.0) * normal)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def strike_normal(puck_velocity: Array, direction: Array, speed: float, gain: float) -> Array:
     """The normal n of the strike after which the puck moves in a direction.
 
@@ -59,7 +60,7 @@ def strike_normal(puck_velocity: Array, direction: Array, speed: float, gain: fl
     return np.asarray(np.sqrt(1.0 - sine * sine) * direction + sine * across)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def mirrored(y: float, wall: float, restitution: float) -> float:
     """Where to aim beyond a wall so that the puck comes off it towards y.
 

@@ -1,9 +1,9 @@
 """What a mallet does to a puck: the restitution of the soft contact, and how to move so that the puck leaves as wanted."""
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import slide
 from airhockey.agents.table import CONTACT
 from airhockey.envs.specs import PUCK
@@ -16,7 +16,7 @@ and impedance 0.95; the contact lasts about 20 ms. The iiwa's mallet gives way a
 PUCK_RADIUS = PUCK.radius
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def redirecting(state: Array, leaving: Array, grip: bool) -> tuple[Array, Array]:
     """Where the mallet's centre is and how it moves when it touches a puck that shall leave with a given velocity.
 
@@ -47,7 +47,7 @@ def redirecting(state: Array, leaving: Array, grip: bool) -> tuple[Array, Array]
     return state[:2] - CONTACT * normal, velocity
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def resting_place(state: Array, standstill: float, constants: Array) -> Array:
     """Where a puck that hits nothing has slowed down to a speed, in [m]/[s]. State (5,). Shape (2,)."""
     moved = state.copy()

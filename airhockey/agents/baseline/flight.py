@@ -3,10 +3,10 @@
 from math import erf, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from airhockey.agents.baseline.rules import Rules
+from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import advance, slide
 
 Array = NDArray[np.float64]
@@ -22,7 +22,7 @@ _NEAR = 0.35
 """How far before the goal line the opponent is looked at, in [m]."""
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def move(state: Array, duration: float, motion: Array) -> None:
     """Move a state along, in place: in one piece where no rim is near, which is exact, else in small ones."""
     reach = duration * max(abs(state[2]), abs(state[3]))
@@ -32,7 +32,7 @@ def move(state: Array, duration: float, motion: Array) -> None:
         advance(state, duration, motion)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def coast(puck: Array, step: float, count: int, motion: Array) -> Array:
     """A puck's states at every `step` [s] from now, undisturbed. Shape (count + 1, 5)."""
     path = np.empty((count + 1, 5))
@@ -43,7 +43,7 @@ def coast(puck: Array, step: float, count: int, motion: Array) -> Array:
     return path
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def state_at(path: Array, step: float, time: float) -> Array:
     """A state between those of a path. Shape (5,)."""
     place = min(max(time / step, 0.0), len(path) - 1.001)
@@ -51,7 +51,7 @@ def state_at(path: Array, step: float, time: float) -> Array:
     return np.asarray((1.0 - (place - k)) * path[k] + (place - k) * path[k + 1])
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def fly(puck: Array, opponent: Array, first: float, rules: Rules) -> tuple[float, float, float, float]:
     """Let a puck fly to the opponent's goal line.
 
@@ -83,20 +83,20 @@ def fly(puck: Array, opponent: Array, first: float, rules: Rules) -> tuple[float
     return _MISSED, gap, length, passing
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def arrives(y: float) -> bool:
     """Whether `fly` returned a place on the goal line."""
     return bool(abs(y) < 0.5 * _MISSED)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def probability_within(y: float, half_width: float, spread: float) -> float:
     """That a normal variable about y lies within ± half_width."""
     scale = spread * sqrt(2.0)
     return 0.5 * (erf((half_width - y) / scale) + erf((half_width + y) / scale))
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def probability_positive(mean: float, spread: float) -> float:
     """That a normal variable is positive."""
     return 0.5 * (1.0 + erf(mean / (spread * sqrt(2.0))))

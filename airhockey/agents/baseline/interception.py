@@ -7,10 +7,10 @@ The way there is judged as a cubic in time: by the speeds and accelerations that
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from airhockey.agents.baseline.contact import redirecting
+from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import advance
 from airhockey.agents.table import CONTACT, HALF_LENGTH
 
@@ -84,7 +84,7 @@ class Wish(NamedTuple):
     grip: bool
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def puck_path(state: Array, steps: int, mouth: float, constants: Array) -> tuple[Array, Array, Array]:
     """Where a puck will be at every `STEP`, until it may be in our goal.
 
@@ -112,7 +112,7 @@ def puck_path(state: Array, steps: int, mouth: float, constants: Array) -> tuple
     return path, bounces, since
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def meeting(state: Array, wish: Wish) -> tuple[Array, Array]:
     """Where the mallet's centre is and how it moves when it catches (or returns) a puck. Shapes (2,), (2,)."""
     leaving = np.zeros(2)
@@ -122,10 +122,10 @@ def meeting(state: Array, wish: Wish) -> tuple[Array, Array]:
         leaving = size / np.hypot(way[0], way[1]) * way
     elif state[0] < wish.rest_x:  # a puck's speed falls by half of its way, in SI units
         leaving[0] = min(wish.standstill + 0.5 * (wish.rest_x - state[0]), wish.push)
-    return redirecting(state, leaving, wish.grip)  # type: ignore[no-any-return]
+    return redirecting(state, leaving, wish.grip)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def effort(start: Array, velocity: Array, end: Array, end_velocity: Array, time: float, reach: Reach) -> float:
     """What share of its means the mallet needs for the cubic from one state to another in a time; above 1: too much."""
     total = 0.0
@@ -141,7 +141,7 @@ def effort(start: Array, velocity: Array, end: Array, end_velocity: Array, time:
     return float(np.sqrt(total))
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def touches_early(
     path: Array, start: Array, velocity: Array, end: Array, end_velocity: Array, time: float, clearance: float
 ) -> bool:
@@ -160,7 +160,7 @@ def touches_early(
     return False
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def best_meeting(
     path: Array,
     bounces: Array,

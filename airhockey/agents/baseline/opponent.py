@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from airhockey.agents.compiling import compiled
 
 Array = NDArray[np.float64]
 
@@ -90,7 +91,7 @@ class OpponentTrack:
         if not self.swinging:
             last = self._seen[-1] if self._count else np.full(2, 10.0)  # nowhere near
             return np.tile(last, (len(times), 1))
-        return _swing(self._rate * times, self._coefficients)  # type: ignore[no-any-return]
+        return _swing(self._rate * times, self._coefficients)
 
 
 def figure_of_eight(turned: float) -> Array:
@@ -104,7 +105,7 @@ def figure_of_eight(turned: float) -> Array:
     return np.array([[0.86, 0.0], [0.0, 0.16 * s], [0.0, 0.16 * c], [0.05 * s2, 0.0], [0.05 * c2, 0.0]])
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _fit(seen: Array, turn: float, mean: Array, spread: Array) -> tuple[Array, float]:
     """Coefficients (5, 2) with time 0 at the last observation, and the root mean square residual in [m].
 
@@ -126,7 +127,7 @@ def _fit(seen: Array, turn: float, mean: Array, spread: Array) -> tuple[Array, f
     return coefficients, np.sqrt(np.sum(error * error) / k)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _swing(phases: Array, coefficients: Array) -> Array:
     basis = np.empty((len(phases), 5))
     for i in range(len(phases)):
@@ -134,7 +135,7 @@ def _swing(phases: Array, coefficients: Array) -> Array:
     return basis @ coefficients
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _fill(row: Array, phase: float) -> None:
     row[0] = 1.0
     row[1], row[2] = np.cos(phase), np.sin(phase)

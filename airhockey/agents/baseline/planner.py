@@ -1,7 +1,6 @@
 """The search for a shot, spread over the control steps: a few candidates at each, and the best so far is kept up to date."""
 
 import numpy as np
-from numba import njit
 
 from airhockey.agents.baseline.flight import FLIGHT_STEP, coast, state_at
 from airhockey.agents.baseline.opponent import OpponentTrack
@@ -9,6 +8,7 @@ from airhockey.agents.baseline.parameters import SmashParameters
 from airhockey.agents.baseline.rules import Rules, make_rules
 from airhockey.agents.baseline.shots import Shot, judge
 from airhockey.agents.baseline.skill import Array, Situation
+from airhockey.agents.compiling import compiled
 from airhockey.agents.control.workspace import Workspace
 
 FLIGHT = 2.0
@@ -71,7 +71,7 @@ class ShotPlanner:
         return self._best if self._best.value > self._least else None
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def search(
     path: Array,
     path_step: float,
@@ -122,7 +122,7 @@ def search(
     return best
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _safe_time(path: Array, path_step: float, rules: Rules) -> float:
     """Until the puck, left alone, comes to our own goal's mouth, in [s]: what comes later is not to be waited for."""
     for k in range(len(path)):

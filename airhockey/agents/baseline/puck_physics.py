@@ -8,9 +8,9 @@ is the gap) and −b v along its tangent; forces f solve (J M⁻¹ Jᵀ + R) f =
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from airhockey.agents.compiling import compiled
 from airhockey.envs.specs import MALLET, PUCK, TABLE
 
 Array = NDArray[np.float64]
@@ -31,7 +31,7 @@ _RIM_CONTACT = (0.0075, 0.1, 0.99, 0.999)
 _RIM_FRICTION = 1e4
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def step(
     puck: Array, mallet_x: float, mallet_y: float, velocity_x: float, velocity_y: float, friction: float, rim: float
 ) -> bool:
@@ -76,21 +76,21 @@ def step(
     return bool(touched)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def clearance(puck: Array, mallet_x: float, mallet_y: float) -> float:
     """The gap to the nearest thing that a puck could touch, in [m]; negative inside it."""
     mallet = math.hypot(puck[0] - mallet_x, puck[1] - mallet_y) - _TOUCH
     return float(min(mallet, _HALF_X - abs(puck[0]), _HALF_Y - abs(puck[1])))
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def put_on_table(puck: Array, gap: float) -> None:
     """Move a puck that is believed to lie within a rim out of it, in place, to a gap in [m]."""
     puck[0] = max(puck[0], -_HALF_X + gap)
     puck[1] = min(max(puck[1], -_HALF_Y + gap), _HALF_Y - gap)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _push(
     puck: Array, normals: Array, gaps: Array, moving: Array, touched: bool, count: int, friction: float, rim: float
 ) -> None:
@@ -133,7 +133,7 @@ def _push(
     puck[4] += TIME_STEP * spin
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _share(x: float) -> float:
     """MuJoCo's impedance law: a smooth step from 0 to 1, with power 2 about the midpoint."""
     if x >= 1.0:

@@ -8,12 +8,12 @@ from math import exp, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from airhockey.agents.baseline.aiming import after_strike, mirrored, strike_normal
 from airhockey.agents.baseline.flight import FLIGHT_STEP, arrives, fly, probability_positive, probability_within
 from airhockey.agents.baseline.rules import Rules
+from airhockey.agents.compiling import compiled
 
 Array = NDArray[np.float64]
 
@@ -51,7 +51,7 @@ class Shot(NamedTuple):
     mallet: Array
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def judge(
     seen: Array,
     wait: float,
@@ -112,14 +112,14 @@ def judge(
     return Shot(value, wait, aim, wall, speed, commanded, puck[:2] - rules.contact * commanded)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def turned(normal: Array, share: float) -> Array:
     """A direction further from the x axis by a share of its sine. Shape (2,)."""
     y = min(max(normal[1] * (1.0 + share), -0.99), 0.99)
     return np.array([sqrt(1.0 - y * y), y])
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def room_speed(mallet: Array, normal: Array, rules: Rules) -> float:
     """The speed that the room behind the contact allows, in [m]/[s]: ½ v²/a + v·steady ≤ room."""
     room = 10.0
@@ -132,7 +132,7 @@ def room_speed(mallet: Array, normal: Array, rules: Rules) -> float:
     return sqrt(late * late + 2.0 * rules.acceleration * max(room - 0.001, 0.0)) - late
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def possible(mallet: Array, normal: Array, speed: float, spare: float, tip: Array, puck: Array, rules: Rules) -> bool:
     """Whether the strike stays inside the workspace, and the mallet can be where it begins in time.
 
@@ -158,7 +158,7 @@ def possible(mallet: Array, normal: Array, speed: float, spare: float, tip: Arra
     return bool(spare >= time)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _way_time(way: float, rules: Rules) -> float:
     """From rest to rest, in [s]."""
     reach = rules.approach_speed**2 / rules.approach_acceleration
@@ -167,7 +167,7 @@ def _way_time(way: float, rules: Rules) -> float:
     return 2.0 * sqrt(way / rules.approach_acceleration)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _towards(puck: Array, target: float, speed: float, rules: Rules) -> Array:
     """The normal of the strike that sends the puck to y = target on the goal line. Shape (2,)."""
     x, y = rules.goal_line - puck[0], target - puck[1]
@@ -175,7 +175,7 @@ def _towards(puck: Array, target: float, speed: float, rules: Rules) -> Array:
     return np.asarray(strike_normal(puck[2:4], np.array([x / length, y / length]), speed, rules.gain))
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _struck(puck: Array, normal: Array, speed: float, rules: Rules) -> Array:
     flight = puck.copy()
     flight[2:4] = after_strike(puck[2:4], normal, speed, rules.gain)

@@ -7,10 +7,10 @@ A stroke is an array of 11 numbers: see the indices below.
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from airhockey.agents.baseline.puck_physics import TIME_STEP, clearance, step
+from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import bounce, slide
 from airhockey.agents.table import CONTACT
 
@@ -27,7 +27,7 @@ FREE_STEP = 0.004
 """Of the puck where nothing can touch it meanwhile, in [s]."""
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def cubic_at(
     start: float, speed: float, end: float, end_speed: float, duration: float, time: float
 ) -> tuple[float, float]:
@@ -38,21 +38,21 @@ def cubic_at(
     return start + time * (speed + time * (c2 + time * c3)), speed + time * (2.0 * c2 + 3.0 * time * c3)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def mallet_at(stroke: Array, axis: int, time: float) -> tuple[float, float]:
     """Position and velocity of the mallet along one axis at a time after the contact, in [s], [m] and [m]/[s]."""
     place, velocity = stroke[PLACE + axis], stroke[VELOCITY + axis]
     if time < 0.0:
         time = max(time + stroke[RUN_UP], 0.0)
-        return cubic_at(stroke[START + axis], 0.0, place, velocity, stroke[RUN_UP], time)  # type: ignore[no-any-return]
+        return cubic_at(stroke[START + axis], 0.0, place, velocity, stroke[RUN_UP], time)
     if time < stroke[FOLLOW]:
         return place + time * velocity, velocity
     begin = place + stroke[FOLLOW] * velocity
     time = min(time - stroke[FOLLOW], stroke[RETREAT])
-    return cubic_at(begin, velocity, stroke[END + axis], 0.0, stroke[RETREAT], time)  # type: ignore[no-any-return]
+    return cubic_at(begin, velocity, stroke[END + axis], 0.0, stroke[RETREAT], time)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def possible(stroke: Array, lower: Array, upper: Array, speed: Array, acceleration: Array) -> bool:
     """Whether the mallet stays in a rectangle and within its means along x and y. Shapes (2,) each."""
     steps = int(np.ceil((stroke[RUN_UP] + stroke[FOLLOW] + stroke[RETREAT]) / 0.02))
@@ -68,7 +68,7 @@ def possible(stroke: Array, lower: Array, upper: Array, speed: Array, accelerati
     return True
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def puck_after(
     puck: Array, stroke: Array, constants: Array, friction: float, rim: float, middle: float
 ) -> tuple[Array, bool]:
@@ -115,7 +115,7 @@ def puck_after(
     return state, False
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def coast(puck: Array, constants: Array, middle: float, horizon: float) -> tuple[int, Array]:
     """Let a puck roll on, from bounce to bounce: what ends it, and its last state.
 

@@ -7,7 +7,6 @@ mallet and the rims not quite as they are believed to be.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from airhockey.agents.baseline.contact import RESTITUTION
@@ -25,6 +24,7 @@ from airhockey.agents.baseline.stroke import (
     possible,
     puck_after,
 )
+from airhockey.agents.compiling import compiled
 from airhockey.agents.table import CONTACT
 
 Array = NDArray[np.float64]
@@ -81,7 +81,7 @@ class Goal(NamedTuple):
     horizon: float
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def worth(ended: int, puck: Array, goal: Goal) -> float:
     """How good it is that the puck is there: 1 to 2 a success, 0 to 1 a place to go on from, −1 the end.
 
@@ -103,7 +103,7 @@ def worth(ended: int, puck: Array, goal: Goal) -> float:
     return float(max(0.0, 0.8 - 1.5 * far - 2.0 * wide))  # the nearer the better
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def value(puck: Array, stroke: Array, goal: Goal, constants: Array, least: float) -> float:
     """Half the least and half the mean of a stroke's worth over the doubts; gives up early below `least`."""
     total, lowest = 0.0, 2.0
@@ -128,7 +128,7 @@ def value(puck: Array, stroke: Array, goal: Goal, constants: Array, least: float
     return 0.5 * lowest + 0.5 * total / len(DOUBTS)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def draw(puck: Array, goal: Goal, rng: np.random.Generator) -> Array:
     """A stroke at random: half of them meant to send the puck to a good place directly."""
     stroke = np.empty(LENGTH)
@@ -160,7 +160,7 @@ def draw(puck: Array, goal: Goal, rng: np.random.Generator) -> Array:
     return stroke
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def vary(best: Array, puck: Array, goal: Goal, rng: np.random.Generator) -> Array:
     """A stroke like another."""
     stroke = best.copy()
@@ -176,7 +176,7 @@ def vary(best: Array, puck: Array, goal: Goal, rng: np.random.Generator) -> Arra
     return stroke
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def finish(stroke: Array, goal: Goal) -> None:
     """Begin where an even acceleration would, or as near as the table allows; end on the table."""
     for i in range(2):
@@ -185,7 +185,7 @@ def finish(stroke: Array, goal: Goal) -> None:
         stroke[END + i] = min(max(stroke[END + i], goal.lower[i]), goal.upper[i])
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def search(
     puck: Array,
     best: Array,

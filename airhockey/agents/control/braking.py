@@ -6,13 +6,14 @@ Compiled, because it is asked several times in every control step.
 from math import sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from airhockey.agents.compiling import compiled
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def stopping_speed(distance: float, acceleration: float, dt: float) -> float:
     """The speed from which braking, beginning one step later, ends within a distance: v²/(2a) + v Δt = d.
 
@@ -27,7 +28,7 @@ def stopping_speed(distance: float, acceleration: float, dt: float) -> float:
     return acceleration * (sqrt(dt * dt + 2.0 * distance / acceleration) - dt)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def box_speeds(position: Array, lower: Array, upper: Array, acceleration: float, dt: float) -> Array:
     """Least and largest velocities at a position within a box. Shape (2, k)."""
     speeds = np.empty((2, position.size))
@@ -37,7 +38,7 @@ def box_speeds(position: Array, lower: Array, upper: Array, acceleration: float,
     return speeds
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def joint_speeds(
     q: Array, velocity: Array, position_limit: Array, velocity_limit: Array, acceleration: Array, dt: float
 ) -> Array:

@@ -7,9 +7,9 @@ five.
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import PuckMotion, puck_motion, transition
 
 Array = NDArray[np.float64]
@@ -148,7 +148,7 @@ class PuckFilter:
         return repeated or (moving and not seen[2:].any())
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def predict(
     state: Array, covariance: Array, duration: float, constants: Array, drift: Array, e_spread: float, k_spread: float
 ) -> tuple[Array, Array]:
@@ -164,7 +164,7 @@ def predict(
     return after, spread
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def correct(
     state: Array, covariance: Array, seen: Array, observation_covariance: Array, contact: Array, surprise: float
 ) -> tuple[Array, Array]:

@@ -16,9 +16,9 @@ from math import exp
 from pathlib import Path
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from airhockey.agents.compiling import compiled
 from airhockey.agents.parameters import load_parameters
 from airhockey.envs.specs import PUCK, TABLE
 
@@ -67,7 +67,7 @@ def puck_motion() -> PuckMotion:
     return load_parameters(PuckMotion, "bounces", Path(__file__).parent)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def slide(state: Array, duration: float, constants: Array) -> None:
     """Move a state along by a duration without bounces, in place."""
     keep = exp(-constants[_DECAY] * duration)
@@ -79,7 +79,7 @@ def slide(state: Array, duration: float, constants: Array) -> None:
     state[4] *= exp(-constants[_SPIN_DECAY] * duration)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def bounce(state: Array, constants: Array) -> bool:
     """Reflect a state that has passed a rim, in place, except in a goal's mouth. Returns whether it bounced."""
     bounced = False
@@ -101,7 +101,7 @@ def bounce(state: Array, constants: Array) -> bool:
     return bounced
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def advance(state: Array, duration: float, constants: Array) -> int:
     """Move a state along by a duration with bounces, in place, in pieces of at most 5 ms. Returns their number."""
     pieces = max(1, int(np.ceil(duration / 0.005 - 1e-9)))
@@ -113,7 +113,7 @@ def advance(state: Array, duration: float, constants: Array) -> int:
     return bounces
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def transition(state: Array, duration: float, constants: Array) -> tuple[Array, Array, int]:
     """A state after a duration, its derivative by the state, and the number of bounces.
 

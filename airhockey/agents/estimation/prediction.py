@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.kalman import PuckEstimate, predict
 from airhockey.agents.estimation.motion import PuckMotion, puck_motion
 
@@ -76,13 +76,13 @@ class PuckPredictor:
 
     def _run(self, estimate: PuckEstimate, time: float) -> tuple[Array, Array]:
         steps = max(1, round(time / self._step))
-        return _run(  # type: ignore[no-any-return]
+        return _run(
             estimate.state, estimate.covariance, steps, self._step, self._constants, self._drift,
             self._motion.restitution_spread, self._motion.slip_spread,
         )  # fmt: skip
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _run(
     state: Array, covariance: Array, steps: int, step: float, constants: Array, drift: Array, e: float, k: float
 ) -> tuple[Array, Array]:

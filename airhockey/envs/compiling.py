@@ -1,0 +1,47 @@
+"""Compiling with numba so that what is cached on disk is never older than its sources.
+
+Numba notices that a function's own file has changed, but not that one which it calls has, and would run the old code in
+silence: after an edit, or after an update of the package. So each group of modules keeps its compiled code in a folder named
+after all the sources that it is made of, constants included.
+"""
+
+import hashlib
+import os
+import pathlib
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar, cast
+
+import numba
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def compiler(home: pathlib.Path, sources: Iterable[pathlib.Path], **options: Any) -> Callable[[Function], Function]:
+    """A decorator that compiles a group's functions without the interpreter lock, cached on disk.
+
+    Args:
+        home: Folder of the group; the cache is in its `__pycache__`, or in the user's cache where that is not writable.
+        sources: Every file that the group's compiled code is made of.
+        options: More options of `numba.njit`.
+    """
+    cache = _cache_folder(home, sources)
+
+    def compiled(function: Function) -> Function:
+        before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, cache
+        try:
+            return cast(Function, numba.njit(nogil=True, cache=True, **options)(function))
+        finally:
+            numba.config.CACHE_DIR = before
+
+    return compiled
+
+
+def _cache_folder(home: pathlib.Path, sources: Iterable[pathlib.Path]) -> str:
+    fingerprint = hashlib.sha256(b"\0".join(source.read_bytes() for source in sorted(sources))).hexdigest()[:16]
+    if numba.config.CACHE_DIR:
+        place = pathlib.Path(numba.config.CACHE_DIR)
+    elif os.access(home, os.W_OK):
+        place = home / "__pycache__"
+    else:
+        place = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "airhockey"
+    return str(place / f"compiled-{fingerprint}")

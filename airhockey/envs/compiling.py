@@ -38,10 +38,12 @@ def compiler(home: pathlib.Path, sources: Iterable[pathlib.Path], **options: Any
 
 def _cache_folder(home: pathlib.Path, sources: Iterable[pathlib.Path]) -> str:
     fingerprint = hashlib.sha256(b"\0".join(source.read_bytes() for source in sorted(sources))).hexdigest()[:16]
+    name = f"compiled-{fingerprint}"
     if numba.config.CACHE_DIR:
-        place = pathlib.Path(numba.config.CACHE_DIR)
-    elif os.access(home, os.W_OK):
-        place = home / "__pycache__"
-    else:
-        place = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "airhockey"
-    return str(place / f"compiled-{fingerprint}")
+        return str(pathlib.Path(numba.config.CACHE_DIR) / name)
+    beside = home / "__pycache__" / name
+    # An isolated agent cannot write there, but its numba was told how to use what others left (`isolation.numba_cache`).
+    reads_only = "ReadOnlyCache" in os.environ.get("NUMBA_CACHE_LOCATOR_CLASSES", "")
+    if os.access(home, os.W_OK) or (reads_only and beside.is_dir()):
+        return str(beside)
+    return str(pathlib.Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "airhockey" / name)

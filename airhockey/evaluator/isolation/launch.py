@@ -104,7 +104,8 @@ def environment(scratch: str) -> dict[str, str]:
         "PYTHONUNBUFFERED": "1",
         "MPLCONFIGDIR": scratch,
         "NUMBA_CACHE_LOCATOR_CLASSES": (
-            "airhockey.evaluator.isolation.numba_cache.BesideTheSource,InTreeCacheLocator,UserWideCacheLocator"
+            "airhockey.evaluator.isolation.numba_cache.ReadOnlyCache,"
+            "UserProvidedCacheLocator,InTreeCacheLocator,UserWideCacheLocator"
         ),
         **ONE_THREAD,
     }

@@ -11,23 +11,22 @@ segments when a run is taken up again. So a kill costs the last second's episode
 """
 
 import contextlib
-import fcntl
+import os
 import shutil
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Self
 
 import msgspec
 
-from airhockey.errors import AirHockeyError, ConfigurationError
+from airhockey.errors import ConfigurationError
 from airhockey.evaluator import trajectories
+from airhockey.evaluator.disk import JSON, begin_folder, disk_errors, lock_folder, replace_file, write_record
 from airhockey.evaluator.records import Episode, EpisodeRecord, Job, Manifest
 
 TRAJECTORIES = "trajectories.h5"
 SEGMENT_SECONDS = 1.0  # how much work a kill may cost
 SEGMENT_EPISODES = 64  # how many trajectories wait in memory
-_JSON = msgspec.json.Encoder()
 
 
 class RunFolder:
@@ -47,12 +46,7 @@ class RunFolder:
         self.trajectories = path / TRAJECTORIES
         self._segments = path / "trajectories"
         self._journal = path / "journal.jsonl"
-        self._lock = (path / "run.json").open()
-        try:
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            self._lock.close()
-            raise ConfigurationError(f"another process is at work on the run in {str(path)!r}") from None
+        self._lock = lock_folder(path)
         self._waiting: list[Episode] = []
         self._flushed_at = 0.0
         self._next_segment = 0
@@ -66,15 +60,7 @@ class RunFolder:
         Raises:
             ConfigurationError: The folder holds something, or cannot be written.
         """
-        try:
-            if path.is_dir() and any(path.iterdir()):
-                raise ConfigurationError(
-                    f"{str(path)!r} is not empty: choose another --out, or continue the run in it with --resume"
-                )
-            path.mkdir(parents=True, exist_ok=True)
-            replace_file(path / "run.json", msgspec.json.format(_JSON.encode(manifest), indent=2) + b"\n")
-        except OSError as error:
-            raise ConfigurationError(f"cannot write a run to {str(path)!r}: {error.strerror}") from error
+        begin_folder(path, "run.json", manifest)
         return cls(path, manifest)
 
     @classmethod
@@ -93,7 +79,7 @@ class RunFolder:
         try:
             self.flush()
         finally:
-            self._lock.close()
+            os.close(self._lock)
 
     @property
     def done(self) -> set[Job]:
@@ -123,7 +109,7 @@ class RunFolder:
             segment.with_suffix(".part").rename(segment)
             self._next_segment += 1
             with self._journal.open("ab") as journal:
-                journal.write(_JSON.encode_lines(records))
+                journal.write(JSON.encode_lines(records))
         self.records += records
         self._flushed_at = time.monotonic()
 
@@ -138,7 +124,7 @@ class RunFolder:
     def keep_result(self, result: msgspec.Struct) -> None:
         """Leave the result beside what it was computed from."""
         with disk_errors(self.path):
-            replace_file(self.path / "result.json", msgspec.json.format(_JSON.encode(result), indent=2) + b"\n")
+            write_record(self.path / "result.json", result)
 
     def _recover(self) -> list[EpisodeRecord]:
         """The records of what is finished; the journal is made to say the same."""
@@ -147,7 +133,7 @@ class RunFolder:
         else:
             records = [record for segment in self._named_segments() for record in self._recover_segment(segment)]
         if records or self._journal.exists():
-            replace_file(self._journal, _JSON.encode_lines(records))
+            replace_file(self._journal, JSON.encode_lines(records))
         return records
 
     def _recover_segment(self, segment: Path) -> list[EpisodeRecord]:
@@ -185,19 +171,3 @@ def read_journal(path: Path) -> list[EpisodeRecord]:
         with contextlib.suppress(msgspec.MsgspecError):
             records.append(msgspec.json.decode(line, type=EpisodeRecord))
     return records
-
-
-def replace_file(path: Path, content: bytes) -> None:
-    """Write a file so that it is the old one or the new one, never half of it."""
-    part = path.with_name(path.name + ".part")
-    part.write_bytes(content)
-    part.replace(path)
-
-
-@contextlib.contextmanager
-def disk_errors(path: Path) -> Iterator[None]:
-    """What the operating system says about a disk, as an error of ours."""
-    try:
-        yield
-    except OSError as error:
-        raise AirHockeyError(f"cannot write the run in {str(path)!r}: {' '.join(str(error).split())}") from error

@@ -10,7 +10,6 @@
 A game is finished when its line stands in the journal; its film is written before. A kill costs the games under way.
 """
 
-import fcntl
 import os
 import shutil
 from collections.abc import Mapping, Sequence
@@ -21,13 +20,12 @@ import msgspec
 
 from airhockey.envs.disturbances import Disturbances, load_disturbances
 from airhockey.errors import ConfigurationError
+from airhockey.evaluator.disk import JSON, begin_folder, disk_errors, lock_folder, replace_file, write_record
 from airhockey.evaluator.games.film import write_film
 from airhockey.evaluator.games.player import Game
 from airhockey.evaluator.games.records import GameRecord, file_name
-from airhockey.evaluator.store import disk_errors, replace_file
 
 Manifest = TypeVar("Manifest", bound=msgspec.Struct)
-_JSON = msgspec.json.Encoder()
 
 
 class GameFolder(Generic[Manifest]):
@@ -42,7 +40,7 @@ class GameFolder(Generic[Manifest]):
     def __init__(self, path: Path, name: str, kind: type[Manifest]) -> None:
         """Use `create` or `open`."""
         self.path, self._name = path, name
-        self._lock = _lock(path)
+        self._lock = lock_folder(path)
         try:
             self.manifest = read_game_manifest(path, name, kind)
             self.records = read_games(path)
@@ -59,15 +57,7 @@ class GameFolder(Generic[Manifest]):
         Raises:
             ConfigurationError: The folder holds something, or cannot be written.
         """
-        try:
-            if path.is_dir() and any(path.iterdir()):
-                raise ConfigurationError(
-                    f"{str(path)!r} is not empty: choose another --out, or continue what is in it with --resume"
-                )
-            path.mkdir(parents=True, exist_ok=True)
-            write_manifest(path / name, manifest)
-        except OSError as error:
-            raise ConfigurationError(f"cannot write games to {str(path)!r}: {error.strerror}") from error
+        begin_folder(path, name, manifest)
         return cls(path, name, type(manifest))
 
     @classmethod
@@ -104,12 +94,12 @@ class GameFolder(Generic[Manifest]):
     def change(self, manifest: Manifest) -> None:
         """Replace the manifest, for a tournament that gets another entry."""
         with disk_errors(self.path):
-            write_manifest(self.path / self._name, manifest)
+            write_record(self.path / self._name, manifest)
         self.manifest = manifest
 
     def add(self, game: Game) -> None:
         """Keep a game; it is on the disk when this returns."""
-        line = _JSON.encode(game.record) + b"\n"
+        line = JSON.encode(game.record) + b"\n"
         with disk_errors(self.path):
             if game.film.size:
                 films = self.path / "films"
@@ -123,7 +113,7 @@ class GameFolder(Generic[Manifest]):
 
     def _tidy(self) -> None:
         """What a kill left half done goes away: a line that was cut short, games that were being played."""
-        whole = _JSON.encode_lines(self.records)
+        whole = JSON.encode_lines(self.records)
         journal = self.path / "journal.jsonl"
         if not journal.exists() or journal.read_bytes() != whole:
             replace_file(journal, whole)
@@ -133,23 +123,7 @@ class GameFolder(Generic[Manifest]):
     def keep_result(self, result: msgspec.Struct) -> None:
         """Leave the result beside the games."""
         with disk_errors(self.path):
-            write_manifest(self.path / "result.json", result)
-
-
-def _lock(path: Path) -> int:
-    """Lock a folder itself, since the files in it are replaced; released when the descriptor is closed."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(descriptor)
-        raise ConfigurationError(f"another process is at work on the games in {str(path)!r}") from None
-    return descriptor
-
-
-def write_manifest(path: Path, content: msgspec.Struct) -> None:
-    """Write a record as indented JSON, whole or not at all."""
-    replace_file(path, msgspec.json.format(_JSON.encode(content), indent=2) + b"\n")
+            write_record(self.path / "result.json", result)
 
 
 def read_game_manifest(path: Path, name: str, kind: type[Manifest]) -> Manifest:

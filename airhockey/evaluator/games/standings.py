@@ -15,9 +15,9 @@ from typing import Any
 
 import msgspec
 
-from airhockey.evaluator.games.folder import in_order, write_manifest
+from airhockey.evaluator.disk import disk_errors, replace_file, write_record
+from airhockey.evaluator.games.folder import in_order
 from airhockey.evaluator.games.records import GameJob, GameRecord
-from airhockey.evaluator.store import disk_errors, replace_file
 
 WIN, DRAW = 3, 1
 
@@ -115,7 +115,7 @@ def write_standings(path: Path, names: Sequence[str], jobs: Sequence[GameJob], r
     """Compute the standings and leave them as standings.json and standings.csv."""
     table = standings(names, jobs, records)
     with disk_errors(path):
-        write_manifest(path / "standings.json", table)
+        write_record(path / "standings.json", table)
         replace_file(path / "standings.csv", as_csv(table).encode())
     return table
 

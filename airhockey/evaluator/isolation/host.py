@@ -27,6 +27,7 @@ from airhockey.evaluator.isolation.launch import Launch
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.output import Output, printable
 from airhockey.evaluator.isolation.pids import first_inside, only_child
+from airhockey.evaluator.isolation.shared_core import SharedCore
 
 Array = NDArray[np.float64]
 
@@ -54,6 +55,7 @@ class IsolatedAgent(Apart):
     _requests: int = -1
     _replies: int = -1
     _output: Output
+    _core: SharedCore
 
     def __init__(
         self, launch: Launch, job: dict[str, Any], limits: Limits, seed: np.random.SeedSequence | None = None
@@ -98,6 +100,7 @@ class IsolatedAgent(Apart):
             ActionError: It is not an array of numbers.
             AgentError: The agent raised, died, or did not answer within the patience.
         """
+        self._core.follow()
         self._memory.write_observation(observation)
         word = self._ask(channel.ACT, self._limits.patience)
         if word == channel.BAD_ACTION:
@@ -179,6 +182,7 @@ class IsolatedAgent(Apart):
         if self._hear(self._limits.start) != channel.HELLO:
             raise self._obituary()
         self._pid = self._process.pid if self._first is None else only_child(self._first)
+        self._core = SharedCore(self._pid)
 
     def _ask(self, word: bytes, patience: float) -> bytes:
         """Say a word and wait for the reply; whoever gives none is stopped."""

@@ -106,33 +106,40 @@ def situation(x: float, velocity: tuple[float, float], tip: tuple[float, float] 
 
 
 @pytest.mark.parametrize(
-    ("task", "now", "finished", "committed", "shot", "x", "speed", "expected"),
+    ("task", "now", "finished", "committed", "stroke", "x", "speed", "expected"),
     [
-        ("hit", "smash", False, True, False, 0.3, -2.0, "smash"),  # a strike under way goes on
-        ("hit", "ready", True, False, True, -0.5, 0.0, "smash"),
-        ("hit", "ready", True, False, False, -0.5, 0.0, "prepare"),
-        ("hit", "ready", True, False, False, -0.5, -0.3, "defend"),
-        ("hit", "prepare", False, False, False, -0.5, -0.3, "prepare"),
-        ("hit", "prepare", False, False, True, -0.5, 0.0, "smash"),
-        ("tournament", "ready", True, False, False, 0.5, -1.5, "defend"),
-        ("tournament", "ready", True, False, True, 0.5, -1.5, "defend"),  # first stop it
-        ("tournament", "ready", True, False, False, 0.5, -2.5, "repel"),
-        ("tournament", "defend", False, False, False, 0.5, -2.5, "defend"),  # no change of mind on the way
-        ("tournament", "ready", True, False, False, 0.5, 0.5, "ready"),
-        ("tournament", "ready", True, False, False, 0.5, -0.05, "ready"),  # it will not come over
-        ("defend", "ready", True, False, True, -0.5, 0.0, "defend"),
-        ("prepare", "ready", True, False, True, -0.5, 0.0, "prepare"),
+        ("hit", "smash", False, True, None, 0.3, -2.0, "smash"),  # a strike under way goes on
+        ("hit", "ready", True, False, "smash", -0.5, 0.0, "smash"),
+        ("hit", "ready", True, False, None, -0.5, 0.0, "prepare"),
+        ("hit", "ready", True, False, None, -0.5, -0.3, "defend"),
+        ("hit", "prepare", False, False, None, -0.5, -0.3, "prepare"),
+        ("hit", "prepare", False, False, "smash", -0.5, 0.0, "smash"),
+        ("tournament", "ready", True, False, None, 0.5, -1.5, "defend"),
+        ("tournament", "ready", True, False, "smash", 0.5, -1.5, "defend"),  # first stop it
+        ("tournament", "ready", True, False, None, 0.5, -2.5, "repel"),
+        ("tournament", "defend", False, False, None, 0.5, -2.5, "defend"),  # no change of mind on the way
+        ("tournament", "ready", True, False, None, 0.5, 0.5, "ready"),
+        ("tournament", "ready", True, False, None, 0.5, -0.05, "ready"),  # it will not come over
+        ("tournament", "drop", False, True, "drop", -0.5, 0.0, "drop"),
+        ("tournament", "ready", True, False, "drop", -0.5, 0.0, "drop"),
+        ("defend", "ready", True, False, "smash", -0.5, 0.0, "defend"),
+        ("prepare", "ready", True, False, "smash", -0.5, 0.0, "prepare"),
     ],
 )
 def test_the_choice_of_a_skill(
-    task: str, now: str, finished: bool, committed: bool, shot: bool, x: float, speed: float, expected: str
+    task: str, now: str, finished: bool, committed: bool, stroke: str | None, x: float, speed: float, expected: str
 ) -> None:
-    assert choose(task, now, finished, committed, shot, situation(x, (speed, 0.0))) == expected
+    assert choose(task, now, finished, committed, stroke, False, situation(x, (speed, 0.0))) == expected
 
 
 def test_a_puck_that_is_being_touched_is_not_shot_at() -> None:
     touching = situation(-0.5, (0.0, 0.0), tip=(-0.5 - CONTACT - 0.005, 0.0))
-    assert choose("hit", "prepare", False, False, True, touching) == "prepare"
+    assert choose("hit", "prepare", False, False, "smash", False, touching) == "prepare"
+
+
+def test_a_patient_player_catches_a_fast_puck() -> None:
+    fast = situation(0.5, (-2.5, 0.0))
+    assert choose("tournament", "ready", True, False, None, True, fast) == "defend"
 
 
 def test_parameters_are_checked() -> None:

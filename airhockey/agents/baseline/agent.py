@@ -7,6 +7,8 @@ import numpy as np
 
 from airhockey.agents.base import AgentBase, Array
 from airhockey.agents.baseline.defend import Defend
+from airhockey.agents.baseline.drop import Drop
+from airhockey.agents.baseline.evidence import ShotRecord
 from airhockey.agents.baseline.prepare import Prepare
 from airhockey.agents.baseline.ready import Ready
 from airhockey.agents.baseline.repel import Repel
@@ -47,9 +49,11 @@ class BaselineAgent(AgentBase):
         self._filter = PuckFilter(self._dt, NOISE)
         self._predictor = PuckPredictor()
         self._task = str(env_info["env_name"]).rpartition("-")[2]
-        self._smash = Smash(env_info)
+        self._smash, self._drop = Smash(env_info), Drop(env_info)
+        self._shots = ShotRecord()
         self._skills: dict[str, Skill] = {
             "smash": self._smash,
+            "drop": self._drop,
             "ready": Ready(env_info),
             "defend": Defend(env_info),
             "repel": Repel(env_info),
@@ -60,6 +64,7 @@ class BaselineAgent(AgentBase):
 
     def reset(self) -> None:
         """See `AgentBase.reset`."""
+        self._shots.serve()
         self._filter.reset()
         self._smash.forget()
         self._skill: Skill | None = None
@@ -72,7 +77,11 @@ class BaselineAgent(AgentBase):
         situation = self._look(observation)
         skill = self._choose(situation)
         self._step += 1
+        striking = skill is self._smash and skill.phase == "strike"
         action = skill.act(situation)
+        if striking and skill.phase == "recover":
+            self._shots.struck()
+        self._shots.wait(situation.dt)
         self.phase = f"{skill.name} {skill.phase}"
         return action
 
@@ -95,14 +104,24 @@ class BaselineAgent(AgentBase):
     def _choose(self, situation: Situation) -> Skill:
         """The skill for this step, begun if it is another than before or had finished."""
         before = self._skill
-        has_shot = self._task not in ("defend", "prepare") and self._smash.scout(situation) is not None
         name = before.name if before is not None else "ready"
         finished = before is None or before.finished
-        skill = self._skills[choose(self._task, name, finished, self._smash.committed, has_shot, situation)]
+        committed = before is not None and getattr(before, "committed", False)
+        stroke, patient = self._stroke(situation), self._shots.futile
+        skill = self._skills[choose(self._task, name, finished, committed, stroke, patient, situation)]
         if skill is not before:
             skill.begin(situation)
             self._skill = skill
         return skill
+
+    def _stroke(self, situation: Situation) -> str | None:
+        """The skill that has a stroke worth trying: a shot at the goal or, in a game where those are futile, a drop."""
+        if self._task in ("defend", "prepare"):
+            return None
+        has_shot = self._smash.scout(situation) is not None
+        if self._task == "hit" or not self._shots.futile:
+            return "smash" if has_shot else None
+        return "drop" if self._drop.scout(situation) is not None else None
 
     def _look(self, observation: Array) -> Situation:
         tip = to_table(self._controller.tip_position())

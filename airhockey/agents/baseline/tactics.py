@@ -19,30 +19,33 @@ OURS = 0.0
 """x up to which the puck is ours to play, in [m]."""
 
 
-def choose(task: str, now: str, finished: bool, committed: bool, has_shot: bool, situation: Situation) -> str:
+def choose(
+    task: str, now: str, finished: bool, committed: bool, stroke: str | None, patient: bool, situation: Situation
+) -> str:
     """The name of the skill for this step.
 
     Args:
         task: "hit", "defend", "prepare", or anything else for a whole game.
         now: Name of the skill that acted last.
         finished: Whether it has nothing left to do.
-        committed: Whether a stroke is under way.
-        has_shot: Whether a shot is worth trying.
+        committed: Whether its stroke is under way.
+        stroke: Name of the skill that has a stroke worth trying, if any.
+        patient: Whether even a fast puck is caught, not knocked back.
         situation: Now.
     """
     if task in ("defend", "prepare"):
         return task
     if committed:
-        return "smash"
+        return now
     puck, velocity = situation.puck.position, situation.puck.velocity
     coming = velocity[0] < -COMING
     if coming and task != "hit":  # in a game a fast puck is stopped first; in the hit task none is fast
         if now in ("defend", "repel") and not finished:
             return now
-        return "repel" if situation.puck.speed > FAST else "defend"
+        return "repel" if situation.puck.speed > FAST and not patient else "defend"
     apart = float(np.hypot(*(puck - situation.tip))) > CONTACT + APART
-    if has_shot and (apart or now != "prepare"):
-        return "smash"
+    if stroke is not None and (apart or now != "prepare"):
+        return stroke
     if now == "prepare" and not finished and puck[0] < OURS:
         return "prepare"
     reach = puck[0] + velocity[0] / 0.5  # where damping alone would let it come to rest

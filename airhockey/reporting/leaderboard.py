@@ -1,0 +1,3 @@
+"""stub"""
+from typing import Any
+def write_site(*a: Any) -> Any: ...

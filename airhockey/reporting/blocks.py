@@ -30,7 +30,9 @@ def table(caption: str, head: Row, rows: Iterable[Row], *, numbers_from: int = 1
     return element("div", whole, class_="scroll", tabindex=0, role="region", aria_label=caption)
 
 
-def figure(caption: Child, drawing: Markup, *, legend: Sequence[tuple[str, str]] = (), data: Markup | None = None) -> Markup:
+def figure(
+    caption: Child, drawing: Markup, *, legend: Sequence[tuple[str, str]] = (), data: Markup | None = None
+) -> Markup:
     """A drawing with its caption, a legend of (class, meaning), and a table of what it shows to unfold."""
     key = [element("span", element("i", class_=class_), meaning) for class_, meaning in legend]
     return element(
@@ -45,6 +47,11 @@ def figure(caption: Child, drawing: Markup, *, legend: Sequence[tuple[str, str]]
 def wide(drawing: Markup, label: str) -> Markup:
     """A drawing that keeps a readable size and scrolls in its own box on a narrow page."""
     return element("div", drawing, class_="scroll wide", tabindex=0, role="region", aria_label=label)
+
+
+def tables(*those: tuple[str, Markup]) -> Markup:
+    """Tables with their headings, beside each other where there is room."""
+    return element("div", *(element("div", element("h3", heading), one) for heading, one in those), class_="tables")
 
 
 def figures(*those: Markup | None) -> Markup:

@@ -36,7 +36,7 @@ class Margins:
 
     per_step: Array
     worst: Array
-    step: Array
+    step: NDArray[np.int64]
     value: Array
     place: Array
 
@@ -141,7 +141,7 @@ def _margins(values: Array, firsts: NDArray[np.int64], since_start: NDArray[np.i
     return Margins(
         per_step=per_step,
         worst=np.maximum.reduceat(values, firsts, axis=0),
-        step=since_start[violating] + 1.0,
+        step=since_start[violating] + 1,
         value=per_step[violating],
         place=mallet[violating],
     )
@@ -153,7 +153,9 @@ def _joined(parts: Sequence[TaskData]) -> TaskData:
         index=_rows(part.index for part in parts),
         success=_rows(part.success for part in parts),
         start=_rows(part.start for part in parts),
-        margins={name: _joined_margins([part.margins[name] for part in parts if name in part.margins]) for name in names},
+        margins={
+            name: _joined_margins([part.margins[name] for part in parts if name in part.margins]) for name in names
+        },
         hit_speed=_rows(part.hit_speed for part in parts),
         hit_success=_rows(part.hit_success for part in parts),
         times=_rows(part.times for part in parts),

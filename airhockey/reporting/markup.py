@@ -14,7 +14,7 @@ class Markup(str):
 Child = str | int | None | Iterable["Child"]
 
 _VOID = frozenset(("br", "hr", "link", "meta"))
-_UNPRINTABLE = {code: "\N{REPLACEMENT CHARACTER}" for code in (*range(9), 11, 12, *range(14, 32), 127)}
+_UNPRINTABLE = dict.fromkeys((*range(9), 11, 12, *range(14, 32), 127), "\N{REPLACEMENT CHARACTER}")
 
 
 def element(tag: str, *children: Child, **attributes: Any) -> Markup:

@@ -35,7 +35,9 @@ class Part:
     section: Markup
 
 
-def report(paths: Sequence[Path], say: Say = lambda _: None, title: str | None = None, back: str | None = None) -> tuple[str, list[str]]:
+def report(
+    paths: Sequence[Path], say: Say = lambda _: None, title: str | None = None, back: str | None = None
+) -> tuple[str, list[str]]:
     """The page of some folders.
 
     Args:
@@ -148,7 +150,9 @@ def _game_part(source: Match | Tournament, identifier: str, say: Say) -> Part:
             try:
                 film = read_game(path, record)
             except _BROKEN as error:
-                source.notes.append(f"cannot read {path.relative_to(source.path)}: {' '.join(str(error).split())[:200]}")
+                source.notes.append(
+                    f"cannot read {path.relative_to(source.path)}: {' '.join(str(error).split())[:200]}"
+                )
         games.append(PlayedGame(record, film))
     if len(source.records) > _MOST_FILMS:
         source.notes.append(f"only the first {_MOST_FILMS} of {len(source.records)} films are analysed")

@@ -22,7 +22,13 @@ from airhockey.evaluator.store import TRAJECTORIES, read_journal, read_manifest
 RUN = "run.json"
 MANIFESTS = (RUN, MATCH, TOURNAMENT)
 AnyManifest = TypeVar("AnyManifest", bound=Manifest | MatchManifest | TournamentManifest)
-_BROKEN = (OSError, KeyError, ValueError, RuntimeError, msgspec.MsgspecError)  # what h5py raises on files that are not whole
+_BROKEN = (
+    OSError,
+    KeyError,
+    ValueError,
+    RuntimeError,
+    msgspec.MsgspecError,
+)  # what h5py raises on files that are not whole
 
 
 @dataclass
@@ -162,7 +168,9 @@ def _open_run(path: Path) -> Run:
         by_job.setdefault(record.job, record)
     run.records = sorted(by_job.values(), key=lambda record: (record.env, record.index))
     if len(by_job) > stored:
-        run.notes.append(f"the trajectories of {len(by_job) - stored} episodes are missing: only their records are left")
+        run.notes.append(
+            f"the trajectories of {len(by_job) - stored} episodes are missing: only their records are left"
+        )
     _check_complete(run)
     return run
 
@@ -202,9 +210,11 @@ def _check_complete(run: Run) -> None:
             run.notes.append(f"{env} is unfinished: {played} of {options.episodes} episodes are there")
 
 
-def _open_games(games: Match | Tournament, name: str, kind: type[MatchManifest | TournamentManifest]) -> Match | Tournament:
+def _open_games(
+    games: Match | Tournament, name: str, kind: type[MatchManifest | TournamentManifest]
+) -> Match | Tournament:
     try:
-        games.manifest = read_game_manifest(games.path, name, kind)  # type: ignore[assignment]
+        games.manifest = read_game_manifest(games.path, name, kind)
     except (ConfigurationError, OSError) as error:
         games.notes.append(f"{error}; options and versions are unknown")
     try:
@@ -220,7 +230,9 @@ def _open_games(games: Match | Tournament, name: str, kind: type[MatchManifest |
         games.notes.append(f"{_count(lines - len(games.records), 'line')} of journal.jsonl cannot be read")
     missing = [record.job.key for record in games.records if games.film(record) is None and record.steps]
     if missing:
-        games.notes.append(f"{_count(len(missing), 'film')} missing, of game {', '.join(missing[:5])}{'…' * (len(missing) > 5)}")
+        games.notes.append(
+            f"{_count(len(missing), 'film')} missing, of game {', '.join(missing[:5])}{'…' * (len(missing) > 5)}"
+        )
     return games
 
 

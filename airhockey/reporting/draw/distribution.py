@@ -42,6 +42,15 @@ def round_edges(low: float, high: float, bins: int = 30) -> Array:
     return np.asarray(np.arange(first, max(last, first + 1) + 1) * width)
 
 
+def rows_of(edges: Array, *counts: NDArray[np.int64], form: str = ".3g") -> list[tuple[str, ...]]:
+    """The rows of a histogram's data table: the bin, then how much is in it; empty bins are left out."""
+    filled = np.flatnonzero(np.sum(counts, axis=0))
+    return [
+        (f"{edges[k]:{form}} – {edges[k + 1]:{form}}".replace("-", "−"), *(f"{one[k]:,}" for one in counts))
+        for k in filled
+    ]
+
+
 def histogram(
     edges: Array,
     series: Sequence[Series],
@@ -63,7 +72,9 @@ def histogram(
         rules: Labelled vertical lines: a limit, a mean.
         include: A value that the x axis reaches whatever the data are.
     """
-    total = np.sum([one.counts for one in series], axis=0) if not log_y else np.max([one.counts for one in series], axis=0)
+    total = (
+        np.sum([one.counts for one in series], axis=0) if not log_y else np.max([one.counts for one in series], axis=0)
+    )
     highest = float(max(total.max(), 1))
     y = Scale(0.5, 10.0 ** math.ceil(math.log10(highest * 1.2)), log=True) if log_y else Scale(0.0, _ceiling(highest))
     low, high = float(edges[0]), float(edges[-1])

@@ -21,7 +21,9 @@ class Interval(NamedTuple):
     class_: str = "a"
 
 
-def interval_plot(rows: Sequence[Interval], scale: Scale, x_label: str, title: str, mark: float | None = None) -> Markup:
+def interval_plot(
+    rows: Sequence[Interval], scale: Scale, x_label: str, title: str, mark: float | None = None
+) -> Markup:
     """The rows, their labels above them so that any name has room; `mark` is a value to draw a line at."""
     height = _TOP + _ROW * len(rows) + _BOTTOM
     bottom = height - _BOTTOM

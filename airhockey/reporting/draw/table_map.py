@@ -95,7 +95,10 @@ def density_cells(where: Array, size: float, unit: str) -> list[Cell]:
         unit: What is counted, for what a cell says.
     """
     columns, rows = int(np.ceil(TABLE.length / size)), int(np.ceil(TABLE.width / size))
-    extent = ((-TABLE.length / 2, -TABLE.length / 2 + columns * size), (-TABLE.width / 2, -TABLE.width / 2 + rows * size))
+    extent = (
+        (-TABLE.length / 2, -TABLE.length / 2 + columns * size),
+        (-TABLE.width / 2, -TABLE.width / 2 + rows * size),
+    )
     counts, x_edges, y_edges = np.histogram2d(where[:, 0], where[:, 1], bins=(columns, rows), range=extent)
     fullest = max(float(np.sqrt(counts.max())), 1.0)
     found = []

@@ -11,9 +11,9 @@ from airhockey.reporting import words
 from airhockey.reporting.draw.axes import Scale, picture, round_step, text
 from airhockey.reporting.markup import Markup, element, number
 
-WIDTH = 760.0
+WIDTH = 1040.0
 _LEFT, _RIGHT = 76.0, WIDTH - 12.0
-_SCORE_TOP, _SCORE_BOTTOM = 10.0, 92.0
+_SCORE_TOP, _SCORE_BOTTOM = 6.0, 92.0
 _LANES: dict[Side, float] = {"home": 116.0, "away": 142.0}
 _SIDE_TOP, _SIDE_BOTTOM = 162.0, 202.0
 _HEIGHT = 234.0
@@ -68,11 +68,11 @@ def _score(events: Sequence[Event], steps: int, x: Scale, classes: dict[Side, st
     scored = [event for event in events if event.what in ("goal", "point") and event.score is not None]
     most = max([1, *(max(event.score) for event in scored if event.score is not None)])
     y = Scale(0.0, float(most))
-    parts = [text(_LEFT - 8.0, _SCORE_TOP + 4.0, "score", "end", "label")]
+    parts = [text(_LEFT - 8.0, (_SCORE_TOP + _SCORE_BOTTOM) / 2 + 8.0, "score", "end", "label")]
     for value in (0, most):
         at = _SCORE_BOTTOM - y(value) * (_SCORE_BOTTOM - _SCORE_TOP - 8.0)
         parts.append(element("line", class_="grid", x1=_LEFT, x2=_RIGHT, y1=at, y2=at))
-        parts.append(text(_LEFT - 8.0, at + 4.0, str(value), "end")) if value != most or most > 0 else None
+        parts.append(text(_LEFT - 8.0, at + 4.0, str(value), "end"))
     for k, side in enumerate(classes):
         shift = 0.0 if k == 0 else 2.0  # so that equal scores show both lines
         path, last = [f"M{number(_LEFT)} {number(_SCORE_BOTTOM + shift)}"], 0
@@ -101,7 +101,11 @@ def _lanes(events: Sequence[Event], x: Scale, classes: dict[Side, str]) -> list[
             mark = "" if event.what in ("goal", "point") else " open"
             parts.append(
                 element(
-                    "path", element("title", says), class_=f"{classes[side]}{mark}", d=_SHAPES[event.what], transform=place
+                    "path",
+                    element("title", says),
+                    class_=f"{classes[side]}{mark}",
+                    d=_SHAPES[event.what],
+                    transform=place,
                 )
             )
     return parts

@@ -7,10 +7,10 @@ import msgspec
 
 from airhockey.evaluator.judging import wilson_interval
 from airhockey.reporting import statistics, words
-from airhockey.reporting.blocks import badge, figure, figures, paragraphs, section, table
+from airhockey.reporting.blocks import badge, figure, figures, paragraphs, section, table, tables
 from airhockey.reporting.draw.axes import Scale
 from airhockey.reporting.draw.intervals import Interval, interval_plot
-from airhockey.reporting.markup import Markup, element, joined
+from airhockey.reporting.markup import Markup
 from airhockey.reporting.results import Task
 from airhockey.reporting.statistics import Difference
 
@@ -68,8 +68,10 @@ def comparison_section(env: str, tasks: Sequence[Task]) -> Markup:
         *(paragraphs([sentence(one, p)], "lead") for one, p in zip(found, adjusted, strict=True)),
         paragraphs(filter(None, [several, *_caveats(tasks)]), "note"),
         figures(_success(env, tasks), _differences(found)),
-        _side_by_side(tasks),
-        *(_pairs_table(one) for one in found if one.pairs is not None),
+        tables(
+            ("Side by side", _side_by_side(tasks)),
+            *(("Episode by episode", _pairs_table(one)) for one in found if one.pairs is not None),
+        ),
     )
 
 
@@ -139,15 +141,11 @@ def _success(env: str, tasks: Sequence[Task]) -> Markup:
 
 
 def _differences(found: Sequence[Comparison]) -> Markup:
-    rows = [
-        Interval(
-            f"{one.first.label} − {one.second.label}",
-            words.points(one.difference.estimate),
-            *(100 * value for value in (one.difference.low, one.difference.estimate, one.difference.high)),
-            _COLOURS[(k + 1) % 4],
-        )
-        for k, one in enumerate(found)
-    ]
+    rows = []
+    for k, one in enumerate(found):
+        estimate, low, high = (100.0 * value for value in one.difference[:3])
+        label = f"{one.first.label} − {one.second.label}"
+        rows.append(Interval(label, words.points(one.difference.estimate), low, estimate, high, _COLOURS[(k + 1) % 4]))
     reach = max(5.0, *(abs(value) for row in rows for value in (row.low, row.high)))
     scale = Scale(-5.0 * -(-reach // 5.0), 5.0 * -(-reach // 5.0))
     title = "Differences of success: " + "; ".join(f"{row.label} {row.value} points" for row in rows)
@@ -163,7 +161,10 @@ def _side_by_side(tasks: Sequence[Task]) -> Markup:
         ("episodes", *(f"{task.episodes:,}" for task in tasks)),
         ("penalty points", *(f"{task.penalty:g}" for task in tasks)),
         ("deployability", *(badge(task.deployability) for task in tasks)),
-        *((f"{words.constraint(name)} violated", *(str(task.violations.get(name, "–")) for task in tasks)) for name in kinds),
+        *(
+            (f"{words.constraint(name)} violated", *(str(task.violations.get(name, "–")) for task in tasks))
+            for name in kinds
+        ),
         ("mean time of draw_action", *(words.milliseconds(task.computation_time[0]) for task in tasks)),
         ("longest", *(words.milliseconds(task.computation_time[2]) for task in tasks)),
         ("failed by the agent", *(str(task.failures) for task in tasks)),
@@ -175,11 +176,11 @@ def _pairs_table(comparison: Comparison) -> Markup:
     assert comparison.pairs is not None
     both, only_first, only_second, neither = comparison.pairs
     first, second = comparison.first.label, comparison.second.label
-    return joined(
-        element("h3", f"Episode by episode: {first} and {second}"),
-        table(
-            f"Episodes by the success of {first} and {second}",
-            ("", f"{second} succeeds", f"{second} does not"),
-            [(f"{first} succeeds", f"{both:,}", f"{only_first:,}"), (f"{first} does not", f"{only_second:,}", f"{neither:,}")],
-        ),
+    return table(
+        f"Episodes by the success of {first} and {second}",
+        ("", f"{second} succeeds", f"{second} does not"),
+        [
+            (f"{first} succeeds", f"{both:,}", f"{only_first:,}"),
+            (f"{first} does not", f"{only_second:,}", f"{neither:,}"),
+        ],
     )

@@ -76,7 +76,9 @@ def game_block(game: PlayedGame, short: dict[str, str], colour: dict[str, str]) 
     return joined(
         figure("Course of the game", drawing, legend=legend, data=listed),
         _figures_table(game, names),
-        paragraphs([f"{names[side]} failed: {game.player(side).failure}" for side in SIDES if game.player(side).failure]),
+        paragraphs(
+            [f"{names[side]} failed: {game.player(side).failure}" for side in SIDES if game.player(side).failure]
+        ),
     )
 
 
@@ -113,7 +115,9 @@ def shots_of(player: str, games: Sequence[PlayedGame]) -> list[Shot]:
 
 def folded_games(games: Sequence[PlayedGame], short: dict[str, str], colour: dict[str, str]) -> list[Markup]:
     """Every game, to unfold."""
-    return [details(f"{game.record.job.key}: {game_title(game, short)}", game_block(game, short, colour)) for game in games]
+    return [
+        details(f"{game.record.job.key}: {game_title(game, short)}", game_block(game, short, colour)) for game in games
+    ]
 
 
 def _turned(shot: Shot) -> Shot:
@@ -133,7 +137,12 @@ def _shot_map(player: str, name: str, shots: Sequence[Shot]) -> Markup:
         layers.append(arrows(starts, ends, _CLASSES[outcome], says))
     legend = [(_CLASSES[outcome], f"{outcome} ({number})") for outcome, number in counts.items()]
     rows = [
-        (words.clock(shot.step), shot.outcome, f"{shot.speed:.2f}", f"{shot.start[0]:.2f}, {shot.start[1]:.2f}".replace("-", "−"))
+        (
+            words.clock(shot.step),
+            shot.outcome,
+            f"{shot.speed:.2f}",
+            f"{shot.start[0]:.2f}, {shot.start[1]:.2f}".replace("-", "−"),
+        )
         for shot in shots[:_MOST_SHOTS]
     ]
     return figure(
@@ -172,7 +181,11 @@ def _puck_map(games: Sequence[PlayedGame]) -> Markup:
     where = np.concatenate([game.film.puck for game in games if game.film is not None])
     title = "Where the puck was, over all games."
     legend = [("d1", "seldom"), ("d5", ""), ("d10", "often")]
-    return figure("Where the puck was", table_map(title, cells(density_cells(where, 0.04, "looks")), left="← home", right="away →"), legend=legend)
+    return figure(
+        "Where the puck was",
+        table_map(title, cells(density_cells(where, 0.04, "looks")), left="← home", right="away →"),
+        legend=legend,
+    )
 
 
 def _figures_table(game: PlayedGame, names: dict[Side, str]) -> Markup:

@@ -49,7 +49,7 @@ def match_section(match: Match, games: Sequence[PlayedGame], identifier: str) ->
 
 def tournament_section(tournament: Tournament, games: Sequence[PlayedGame], identifier: str) -> Markup:
     """Standings, ratings, cross table, and every game to unfold."""
-    names = _entries(tournament, games)
+    names = _entries(tournament)
     found = tournament_standings(tournament, names)
     rows = found.rows
     ranked = [row.name for row in rows]
@@ -76,9 +76,48 @@ def tournament_standings(tournament: Tournament, names: Sequence[str]) -> Standi
     return standings(names, jobs, tournament.records)
 
 
+def standings_section(tournament: Tournament, identifier: str, links: Child) -> Markup:
+    """A tournament on a leaderboard."""
+    found = tournament_standings(tournament, _entries(tournament))
+    when = [
+        tournament.created[:10],
+        f"{found.played} of {found.games} games",
+        f"disturbances {tournament.disturbances}",
+    ]
+    line = element("p", " · ".join(filter(None, when)), " · ", links, class_="note")
+    return section(identifier, f"Tournament {tournament.path.name}", line, standings_table(found))
+
+
+def matches_section(matches: Sequence[tuple[Match, Child]]) -> Markup:
+    """Matches on a leaderboard, with their links."""
+    rows: list[Row] = []
+    for match, links in matches:
+        games = [PlayedGame(record, None) for record in match.records]
+        players = _players(games, match.manifest.options.home if match.manifest else games[0].record.job.home)
+        short = short_names(players)
+        counts = (str(value) for value in (len(games), *_outcomes(games, players[0])))
+        title = " – ".join(short[player] for player in players)
+        rows.append((title, match.created[:10], *counts, match.disturbances, links))
+    head = ("match", "begun", "games", "won", "drawn", "lost", "disturbances", "see")
+    return section("matches", "Matches", table("Matches, seen from their first player", head, rows, numbers_from=2))
+
+
 def standings_table(found: Standings) -> Markup:
     """Everybody, best first."""
-    head = ("#", "entry", "points", "played", "won", "drawn", "lost", "goals", "difference", "penalty", "forfeits", "rating")
+    head = (
+        "#",
+        "entry",
+        "points",
+        "played",
+        "won",
+        "drawn",
+        "lost",
+        "goals",
+        "difference",
+        "penalty",
+        "forfeits",
+        "rating",
+    )
     rows: list[Row] = [
         (
             str(row.rank),
@@ -107,19 +146,28 @@ def _players(games: Sequence[PlayedGame], first: str) -> list[str]:
     return sorted(seen, key=lambda name: name != first)
 
 
-def _entries(tournament: Tournament, games: Sequence[PlayedGame]) -> list[str]:
+def _entries(tournament: Tournament) -> list[str]:
     if tournament.manifest is not None:
         return [entry.name for entry in tournament.manifest.options.entries]
-    return list(dict.fromkeys(name for game in games for name in (game.record.job.home, game.record.job.away)))
+    return list(dict.fromkeys(name for record in tournament.records for name in (record.job.home, record.job.away)))
+
+
+def _outcomes(games: Sequence[PlayedGame], player: str) -> tuple[int, int, int]:
+    """Games that a player won, drew and lost."""
+    winners = [
+        None if game.record.winner == "draw" else game.name("home" if game.record.winner == "home" else "away")
+        for game in games
+    ]
+    won, drawn = winners.count(player), winners.count(None)
+    return won, drawn, len(winners) - won - drawn
 
 
 def _tally(games: Sequence[PlayedGame], players: Sequence[str], short: dict[str, str]) -> str:
+    played = words.count(len(games), "game")
     if len(players) != 2:
-        return f"{words.count(len(games), 'game')} of {short[players[0]]} against itself."
-    winners = [game.record.job.home if game.record.winner == "home" else game.record.job.away for game in games if game.record.winner != "draw"]
-    wins, losses = (winners.count(player) for player in players)
-    draws = len(games) - wins - losses
-    return f"{short[players[0]]} won {wins}, drew {draws} and lost {losses} of {words.count(len(games), 'game')} against {short[players[1]]}."
+        return f"{played} of {short[players[0]]} against itself."
+    won, drawn, lost = _outcomes(games, players[0])
+    return f"{short[players[0]]} won {won}, drew {drawn} and lost {lost} of {played} against {short[players[1]]}."
 
 
 def _games_table(games: Sequence[PlayedGame], short: dict[str, str]) -> Markup:
@@ -167,9 +215,11 @@ def _cross_table(names: Sequence[str], records: Sequence[GameRecord]) -> Markup:
     scores: dict[tuple[str, str], list[str]] = {}
     for record in sorted(records, key=lambda record: record.job.key):
         forfeit = " (forfeit)" if record.home.failure or record.away.failure else ""
-        scores.setdefault((record.job.home, record.job.away), []).append(f"{record.score[0]} : {record.score[1]}{forfeit}")
+        scores.setdefault((record.job.home, record.job.away), []).append(
+            f"{record.score[0]} : {record.score[1]}{forfeit}"
+        )
     rows = [
-        (home, *("·" if home == away else ", ".join(scores.get((home, away), ["–"])) for away in names)) for home in names
+        (home, *("·" if home == away else ", ".join(scores.get((home, away), ["–"])) for away in names))
+        for home in names
     ]
     return table("Scores: rows at home, columns away", ("home \\ away", *names), rows)
-

@@ -52,15 +52,15 @@ def missing(sources: Iterable[Source]) -> Markup | None:
     if not rows:
         return None
     listed = [element("li", element("code", path), ": ", note) for path, note in rows]
-    return element(
-        "section", element("h2", "What is missing"), element("ul", *listed), id="missing", class_="warning"
-    )
+    return element("section", element("h2", "What is missing"), element("ul", *listed), id="missing", class_="warning")
 
 
 def conditions(sources: Iterable[Source], labels: dict[int, str]) -> Markup:
     """Where the results come from and under which conditions they were played."""
     shown = [source for source in sources if not isinstance(source, Nothing)]
-    return section("conditions", "Conditions", *(_conditions_of(source, labels.get(id(source), "")) for source in shown))
+    return section(
+        "conditions", "Conditions", *(_conditions_of(source, labels.get(id(source), "")) for source in shown)
+    )
 
 
 def _row(task: Task, kinds: Sequence[str]) -> list[Child]:

@@ -1,8 +1,8 @@
 """What a game's film shows: who had the puck where, who hit it, and what became of the shots.
 
 A *shot* is a hit after which the puck crosses the middle line away from the player, before anybody touches it again. It is *on
-target* if its path at the crossing, mirrored at the side rims, ends in the goal. It is a *goal* if it scores before another
-touch; *saved* if it was on target and the opponent touched it first; else *off target*.
+target* if its path at the crossing, mirrored at the side rims, ends in the goal. It is a *goal* if it scores, off the opponent
+or not, before the player touches it again; *saved* if it was on target and the opponent touched it; else *off target*.
 """
 
 from collections.abc import Sequence
@@ -23,6 +23,7 @@ Outcome = Literal["goal", "saved", "off target"]
 OUTCOMES: tuple[Outcome, ...] = ("goal", "saved", "off target")
 _ROW = 23  # entries of a robot's half of a base observation ...
 _OTHER = slice(20, 22)  # ... and where the other robot's rod tip stands in it
+_TOUCHES = 50  # hits after a shot that are looked through for the shooter's own
 
 
 @dataclass(frozen=True)
@@ -111,15 +112,15 @@ def _shots(
     shots = []
     for number, (step, side) in enumerate(hits):
         end_of_serve = int(ends[np.searchsorted(ends, step, side="right")])
-        next_touch = hits[number + 1][0] if number + 1 < len(hits) else len(rows)
-        until = min(end_of_serve, next_touch)
+        later = [(then, who) for then, who in hits[number + 1 : number + 1 + _TOUCHES] if then < end_of_serve]
+        until = later[0][0] if later else end_of_serve
         towards = 1.0 if side == HOME else -1.0
         beyond = np.flatnonzero(rows[step:until, 0] * towards > 0.0)
         if beyond.size == 0 or rows[step, 0] * towards > 0.0:
             continue
-        touched = hits[number + 1][1] if next_touch < end_of_serve else None
-        scored = goals.get(end_of_serve) == side and touched is None
-        outcome = _outcome(scored, touched not in (None, side), rows[step + beyond[0]], towards)
+        scored = goals.get(end_of_serve) == side and all(who != side for _, who in later)
+        opponent_touched = bool(later) and later[0][1] != side
+        outcome = _outcome(scored, opponent_touched, rows[step + beyond[0]], towards)
         x, y, _, speed_x, speed_y = rows[step, :5]
         shots.append(Shot(side, step + 1, (float(x), float(y)), (float(speed_x), float(speed_y)), outcome))
     return shots

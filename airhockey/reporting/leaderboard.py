@@ -146,7 +146,7 @@ class _Site:
             f"runs of a task the one with the most episodes, up to {OFFICIAL_EPISODES}, counts, and of those the latest. "
             f"Made by hockey {__version__} on {made}."
         )
-        self.site.write(name, page(title, subtitle, parts, links, foot))
+        self.site.write(name, page(title, subtitle, parts, links, foot, here=name))
 
     def _see(self, task: Task) -> Markup:
         return see(self._links(task.run))

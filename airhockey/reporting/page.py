@@ -9,7 +9,14 @@ from airhockey.reporting.markup import Child, Markup, element, joined
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'"
 
 
-def page(title: str, subtitle: Child, content: Sequence[Markup], links: Sequence[tuple[str, str]], foot: Child) -> str:
+def page(
+    title: str,
+    subtitle: Child,
+    content: Sequence[Markup],
+    links: Sequence[tuple[str, str]],
+    foot: Child,
+    here: str = "",
+) -> str:
     """A whole page.
 
     Args:
@@ -18,6 +25,7 @@ def page(title: str, subtitle: Child, content: Sequence[Markup], links: Sequence
         content: Sections.
         links: Target and name of everything in the navigation.
         foot: The last line.
+        here: The target that is this page.
     """
     head = element(
         "head",
@@ -29,7 +37,10 @@ def page(title: str, subtitle: Child, content: Sequence[Markup], links: Sequence
         element("title", title),
         element("style", Markup(_style())),
     )
-    navigation = element("nav", *(element("a", name, href=target) for target, name in links), aria_label="Contents")
+    anchors = (
+        element("a", name, href=target, aria_current="page" if target == here else None) for target, name in links
+    )
+    navigation = element("nav", *anchors, aria_label="Contents")
     body = element(
         "body",
         element("a", "Skip to the content", class_="skip", href="#content"),

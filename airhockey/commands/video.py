@@ -7,20 +7,12 @@ from typing import Any
 import rich_click as click
 
 
-class Size(click.ParamType[tuple[int, int]]):
-    """A size in pixels, like 960x540."""
-
-    name = "WIDTHxHEIGHT"
-
-    def convert(self, value: Any, param: Any, ctx: Any) -> tuple[int, int]:
-        """Read it; 16 to 4096 pixels each way."""
-        if isinstance(value, tuple):
-            return value
-        match = re.fullmatch(r"(\d+)x(\d+)", str(value))
-        if match is None or not all(16 <= int(side) <= 4096 for side in match.groups()):
-            self.fail(f"{value!r} is no size: give WIDTHxHEIGHT, each from 16 to 4096, like 960x540", param, ctx)
-        width, height = (int(side) for side in match.groups())
-        return width, height
+def _size(ctx: Any, param: Any, value: str) -> tuple[int, int]:
+    """Read WIDTHxHEIGHT, 16 to 4096 pixels each way."""
+    match = re.fullmatch(r"(\d+)x(\d+)", value)
+    if match is None or not all(16 <= int(side) <= 4096 for side in match.groups()):
+        raise click.BadParameter(f"{value!r} is no size: give WIDTHxHEIGHT, each from 16 to 4096, like 960x540")
+    return int(match[1]), int(match[2])
 
 
 @click.command()
@@ -37,7 +29,9 @@ class Size(click.ParamType[tuple[int, int]]):
 @click.option("--highlights", is_flag=True, help="Only goals, saves, faults and violations, with what led to them.")
 @click.option("--fps", type=click.FloatRange(1, 100), default=25, show_default=True, help="Frames per second.")
 @click.option("--speed", type=click.FloatRange(0.02, 50), default=1, show_default=True, help="Times as fast as it was.")
-@click.option("--size", type=Size(), default="960x540", show_default=True, help="Of the picture.")
+@click.option(
+    "--size", metavar="WIDTHxHEIGHT", callback=_size, default="960x540", show_default=True, help="Of the picture."
+)
 @click.option("--no-inset", is_flag=True, help="Without the view from above.")
 @click.option(
     "--quality",

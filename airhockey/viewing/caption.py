@@ -13,7 +13,7 @@ class Caption:
         title: What is shown.
         players: Names; one, or home and away.
         seconds: Since the beginning.
-        score, faults, penalty: Of home and away; None where nothing is counted.
+        score, faults, penalty: Of home and away, or of the only player; None where nothing is counted.
         phases: What each player is doing, as far as it says so.
         news: What has just happened; "" for nothing.
         alarm: Constraints that are violated now; "" for none.
@@ -24,7 +24,7 @@ class Caption:
     seconds: float
     score: tuple[int, int] | None = None
     faults: tuple[int, int] | None = None
-    penalty: tuple[float, float] | None = None
+    penalty: tuple[float, ...] | None = None
     phases: tuple[str, ...] = ()
     news: str = ""
     alarm: str = ""

@@ -42,7 +42,7 @@ class Camera:
         model.vis.global_.offwidth, model.vis.global_.offheight = width, height
         self._option = mujoco.MjvOption()
         self._scene = mujoco.MjvScene(model, maxgeom=1000)
-        self._views = [(look_from_stands(stage, width / height), mujoco.MjrRect(0, 0, width, height))]
+        self._views = [(look_from_stands(stage.robots, width / height), mujoco.MjrRect(0, 0, width, height))]
         if inset:
             w = round(INSET_SHARE * width)
             h, margin = round(w / INSET_ASPECT), round(_MARGIN * width)
@@ -85,20 +85,19 @@ class Camera:
         mujoco.mjr_render(place, scene, self._renderer)
 
 
-def look_from_stands(stage: Stage, aspect: float) -> Any:
+def look_from_stands(robots: int, aspect: float) -> Any:
     """From the side, a little above: both robots and the whole table."""
     camera = mujoco.MjvCamera()
-    mujoco.mjv_defaultFreeCamera(stage.model, camera)
-    two = stage.robots == 2
+    two = robots == 2
     camera.lookat[:] = (0.0, 0.05, 0.30) if two else (-0.26, 0.02, 0.24)
     camera.azimuth, camera.elevation = (90.0, -31.0) if two else (80.0, -32.0)
     camera.distance = (2.85 if two else 2.38) * max(1.0, (16 / 9) / aspect)
     return camera
 
 
-def look_from_above() -> Any:
-    """Straight down: the table fills the picture."""
+def look_from_above(fill: float = 1.0) -> Any:
+    """Straight down: the table fills the picture; from `fill` times that height."""
     camera = mujoco.MjvCamera()
     camera.lookat[:] = (0.0, 0.0, 0.0)
-    camera.azimuth, camera.elevation, camera.distance = 90.0, -90.0, 1.53
+    camera.azimuth, camera.elevation, camera.distance = 90.0, -90.0, 1.53 * fill
     return camera

@@ -113,6 +113,11 @@ class Competitor:
         return np.asarray(action if action.ndim == 1 else action[0])
 
     @property
+    def command(self) -> Array | None:
+        """The joint position that it commanded last, in [rad]; before that where a serve found it. Shape (n,)."""
+        return self._position
+
+    @property
     def commands_the_absurd(self) -> bool:
         """Whether its latest action is nothing that a robot could be sent."""
         return bool(np.abs(self._action).max() > HUGE)

@@ -12,10 +12,10 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from airhockey.reporting.document import report
     from airhockey.reporting.leaderboard import write_site
-    from airhockey.reporting.report import report
 
-_HOMES = {"report": "report", "write_site": "leaderboard"}
+_HOMES = {"report": "document", "write_site": "leaderboard"}
 
 __all__ = ["report", "write_site"]
 

@@ -8,6 +8,7 @@ those the latest.
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from airhockey.envs.disturbances import Disturbances
 from airhockey.envs.editions import Edition
 from airhockey.evaluator.judging import CLASSES, PHASES, worst_class
 from airhockey.reporting.results import OFFICIAL_EPISODES, Task
@@ -15,10 +16,17 @@ from airhockey.reporting.results import OFFICIAL_EPISODES, Task
 
 @dataclass(frozen=True)
 class Condition:
-    """Under which results are compared: the edition of the rules and the profile of disturbances."""
+    """Under which results are compared.
+
+    Attributes:
+        edition: Of the rules.
+        disturbances: Name of the profile.
+        profile: The profile itself: a file of one name may change.
+    """
 
     edition: str
     disturbances: str
+    profile: Disturbances | None
 
 
 @dataclass(frozen=True)
@@ -48,9 +56,16 @@ class Overall:
 
 @dataclass
 class Board:
-    """All results under one condition: entry -> environment -> its runs, the latest last."""
+    """All results under one condition.
+
+    Attributes:
+        condition: The condition.
+        label: Its name, which no other board of the site has.
+        results: Entry -> environment -> its runs, the latest last.
+    """
 
     condition: Condition
+    label: str
     results: dict[str, dict[str, list[Task]]] = field(default_factory=dict)
 
     @property
@@ -90,10 +105,17 @@ def boards(tasks: Iterable[Task]) -> list[Board]:
     found: dict[Condition, Board] = {}
     for task in sorted(tasks, key=lambda task: task.run.created):
         manifest = task.run.manifest
-        condition = Condition(manifest.options.edition if manifest else "unknown", task.run.disturbances)
-        board = found.setdefault(condition, Board(condition))
-        board.results.setdefault(task.run.agent, {}).setdefault(task.env, []).append(task)
-    return sorted(found.values(), key=lambda board: (-len(board.results), board.condition.disturbances))
+        condition = Condition(
+            edition=manifest.options.edition if manifest else "unknown",
+            disturbances=task.run.disturbances,
+            profile=manifest.profile if manifest else None,
+        )
+        if condition not in found:
+            alike = sum(other.disturbances == condition.disturbances for other in found)
+            label = condition.disturbances if not alike else f"{condition.disturbances} (another, {alike + 1})"
+            found[condition] = Board(condition, label)
+        found[condition].results.setdefault(task.run.agent, {}).setdefault(task.env, []).append(task)
+    return sorted(found.values(), key=lambda board: (-len(board.results), board.label))
 
 
 def phases(rules: Edition) -> dict[str, Mapping[str, float]]:

@@ -9,15 +9,15 @@ from airhockey import __version__
 from airhockey.envs.editions import available, edition
 from airhockey.errors import AirHockeyError, ConfigurationError
 from airhockey.reporting import words
+from airhockey.reporting.document import report
 from airhockey.reporting.entries import boards, phases
 from airhockey.reporting.markup import Markup
 from airhockey.reporting.page import link, page
-from airhockey.reporting.report import report
 from airhockey.reporting.results import OFFICIAL_EPISODES, Task
 from airhockey.reporting.sections.board import history_section, overall_section, see, task_section
 from airhockey.reporting.sections.match import matches_section, standings_section
 from airhockey.reporting.sections.summary import missing
-from airhockey.reporting.site import SiteFolder, slug
+from airhockey.reporting.site import SiteFolder, check_place, slug
 from airhockey.reporting.sources import MANIFESTS, Match, Nothing, Run, Source, Tournament, open_source
 
 Say = Callable[[str], None]
@@ -43,6 +43,7 @@ def write_site(folder: Path, site: Path, say: Say = lambda _: None) -> tuple[int
     """
     if not folder.is_dir():
         raise ConfigurationError(f"there is no folder {str(folder)!r}")
+    check_place(site)
     sources = []
     for path in results_below(folder, site):
         say(f"reading {path}")

@@ -25,15 +25,10 @@ class SiteFolder:
     """
 
     def __init__(self, path: Path) -> None:
+        check_place(path)
         self.path = path
         self.written: list[str] = []
         mark = path / MARK
-        if path.exists() and not path.is_dir():
-            raise ConfigurationError(f"{str(path)!r} is a file: the site needs a folder, choose another with -o")
-        if path.is_dir() and any(path.iterdir()) and not mark.exists():
-            raise ConfigurationError(
-                f"{str(path)!r} holds something that is no leaderboard: choose another folder with -o"
-            )
         path.mkdir(parents=True, exist_ok=True)
         self._old = mark.read_text(encoding="utf-8").splitlines() if mark.exists() else []
         mark.touch()  # what is interrupted from here on can be written again
@@ -66,8 +61,16 @@ class SiteFolder:
         replace_file(self.path / MARK, "".join(f"{name}\n" for name in sorted(self.written)).encode())
 
 
+def check_place(path: Path) -> None:
+    """Find out whether a site may be written here; raises `ConfigurationError` where there is something else."""
+    if path.exists() and not path.is_dir():
+        raise ConfigurationError(f"{str(path)!r} is a file: the site needs a folder, choose another with -o")
+    if path.is_dir() and any(path.iterdir()) and not (path / MARK).exists():
+        raise ConfigurationError(f"{str(path)!r} holds something that is no leaderboard: choose another folder with -o")
+
+
 def slug(name: str) -> str:
     """A name as part of a file's name and of a link. Two names never have the same."""
     kept = "".join(letter if letter.isascii() and (letter.isalnum() or letter in "-_.") else "_" for letter in name)
     kept = kept.lstrip(".")[:80]
-    return kept if kept == name else f"{kept}-{zlib.crc32(name.encode('utf-8', 'replace')):08x}"
+    return kept if kept and kept == name else f"{kept}-{zlib.crc32(name.encode('utf-8', 'replace')):08x}"

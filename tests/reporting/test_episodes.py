@@ -31,7 +31,7 @@ def test_every_aggregate_is_that_of_the_single_episodes(
     times = np.concatenate([episode.trajectory["computation_time"] for episode in in_order])
     assert np.array_equal(data.times, times)
     starts = np.array([episode.trajectory["observations"][0, :6] for episode in in_order])
-    assert data.start == pytest.approx(starts + [[-1.51, 0, 0, 0, 0, 0]])
+    assert data.start == pytest.approx(starts - np.array([1.51, 0, 0, 0, 0, 0]))
     assert data.margins["ee_constr"].value.size  # or the following would be empty
     for name, margins in data.margins.items():
         values = [episode.trajectory[f"constraints/{name}"] for episode in in_order]

@@ -44,7 +44,8 @@ def test_free_flight_friction_and_rims_are_no_contacts() -> None:
     assert not contacts(flying, slower, still, still).any()
     bounced = slower.copy()
     bounced[0, 4] *= -1  # off the rim at the top, away from which no mallet is near
-    assert not contacts(flying + [[0, 0.4, 0, 0, 0, 0]], bounced + [[0, 0.4, 0, 0, 0, 0]], still, still).any()
+    aside = np.array([[0.0, 0.4, 0.0, 0.0, 0.0, 0.0]])
+    assert not contacts(flying + aside, bounced + aside, still, still).any()
     towards = np.array([[0.09, 0.0, 0.0, 1.0, 0.0, 0.0]])
     back = towards * [[1, 1, 1, -1, 1, 1]]  # near the mallet, but turned towards it
     assert not contacts(towards, back, still, still).any()

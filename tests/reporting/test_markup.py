@@ -1,5 +1,6 @@
 """Other people's strings stay text, wherever they stand."""
 
+import itertools
 from html.parser import HTMLParser
 
 import pytest
@@ -54,19 +55,23 @@ def test_markup_is_not_escaped_again_and_none_is_left_out() -> None:
     assert element("br", class_=None, hidden=True) == "<br hidden>"
 
 
-@pytest.mark.parametrize(("value", "written"), [(0.0, "0"), (-0.04, "0"), (1.25, "1.2"), (3.0, "3"), (-12.34, "-12.3"), (100.0, "100")])
+@pytest.mark.parametrize(
+    ("value", "written"), [(0.0, "0"), (-0.04, "0"), (1.25, "1.2"), (3.0, "3"), (-12.34, "-12.3"), (100.0, "100")]
+)
 def test_coordinates_are_short(value: float, written: str) -> None:
     assert number(value) == written
 
 
-@pytest.mark.parametrize("scale", [Scale(0.0, 1.0), Scale(-3.7, 12.2), Scale(0.0, 12345.0), Scale(1e-4, 2e3, log=True), Scale(-0.003, 0.0)])
+@pytest.mark.parametrize(
+    "scale", [Scale(0.0, 1.0), Scale(-3.7, 12.2), Scale(0.0, 12345.0), Scale(1e-4, 2e3, log=True), Scale(-0.003, 0.0)]
+)
 def test_ticks_are_round_lie_within_and_are_a_few(scale: Scale) -> None:
     ticks = scale.ticks()
     assert 2 <= len(ticks) <= 8
     assert all(scale.low - 1e-9 <= tick <= scale.high + 1e-9 for tick in ticks)
     fractions = [scale(tick) for tick in ticks]
     assert fractions == sorted(fractions)
-    gaps = [b - a for a, b in zip(fractions, fractions[1:], strict=False)]
+    gaps = [b - a for a, b in itertools.pairwise(fractions)]
     assert gaps == pytest.approx([gaps[0]] * len(gaps))
 
 

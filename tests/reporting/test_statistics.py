@@ -17,12 +17,16 @@ def test_mcnemar_is_the_share_of_coin_tosses_at_least_as_lopsided(only_first: in
     assert mcnemar(only_first, only_second) == pytest.approx(extreme / 2**tosses, rel=1e-9)
 
 
-@pytest.mark.parametrize("table", [(3, 1, 1, 3), (8, 2, 1, 5), (0, 5, 4, 1), (7, 0, 0, 7), (2, 3, 4, 6), (5, 0, 5, 0), (1, 9, 11, 3)])
+@pytest.mark.parametrize(
+    "table", [(3, 1, 1, 3), (8, 2, 1, 5), (0, 5, 4, 1), (7, 0, 0, 7), (2, 3, 4, 6), (5, 0, 5, 0), (1, 9, 11, 3)]
+)
 def test_fisher_is_the_share_of_shuffles_at_most_as_likely(table: tuple[int, int, int, int]) -> None:
     """With exact fractions, over every way to deal the successes to the two samples."""
     a, b, c, d = table
     successes, total = a + c, a + b + c + d
-    ways = {k: math.comb(a + b, k) * math.comb(c + d, successes - k) for k in range(successes + 1) if successes - k >= 0}
+    ways = {
+        k: math.comb(a + b, k) * math.comb(c + d, successes - k) for k in range(successes + 1) if successes - k >= 0
+    }
     likely = sum(count for count in ways.values() if count <= ways[a])
     assert fisher(*table) == pytest.approx(float(Fraction(likely, math.comb(total, successes))), rel=1e-9)
 
@@ -59,7 +63,7 @@ def test_the_interval_of_pairs_is_newcombes() -> None:
 def test_intervals_hold_the_estimate_and_stay_within_what_is_possible(pairs: tuple[int, int, int, int]) -> None:
     difference = compare_pairs(*pairs)
     assert -1.0 - 1e-12 <= difference.low <= difference.estimate <= difference.high <= 1.0 + 1e-12
-    both, first, second, neither = pairs
+    both, first, second, _ = pairs
     samples = compare_samples(both + first, sum(pairs), both + second, sum(pairs))
     assert -1.0 - 1e-12 <= samples.low <= samples.estimate <= samples.high <= 1.0 + 1e-12
 

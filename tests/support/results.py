@@ -39,7 +39,10 @@ def make_results(root: Path) -> Results:
     agents.mkdir()
     swings = make_submission(agents, f"{SWING}\n        {FAIL}", config="interpolation_order: 3\n")
     nasty = Path(swings).rename(agents / "<b>swings&")
-    found = Results(root / "results", *(root / "results" / name for name in ("swings", "holds", "below/other", "match", "tournament")))
+    found = Results(
+        root / "results",
+        *(root / "results" / name for name in ("swings", "holds", "below/other", "match", "tournament")),
+    )
     run = Options(environments=(ENV,), agent=str(nasty), episodes=EPISODES, seed=3)
     evaluate(begin(run, found.swings))
     evaluate(begin(Options(environments=(ENV,), agent="hold", episodes=EPISODES, seed=3), found.holds))

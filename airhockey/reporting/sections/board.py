@@ -33,7 +33,7 @@ def overall_section(
         f"{phase}-{_anchor(board)}",
         overall_title(board, phase),
         paragraphs([f"Score: {formula}, each the share of successes."], "note"),
-        _groups(head, rows, f"{phase}, {board.condition.disturbances}"),
+        _groups(head, rows, f"{phase}, {board.label}"),
         paragraphs(lacking, "note"),
     )
 
@@ -41,7 +41,7 @@ def overall_section(
 def overall_title(board: Board, phase: str) -> str:
     """The heading of a ranking."""
     robot = {"phase-1": "3-DoF robot", "phase-2": "7-DoF robot"}.get(phase, phase)
-    return f"Overall, {robot}, disturbances {board.condition.disturbances}"
+    return f"Overall, {robot}, disturbances {board.label}"
 
 
 def task_section(board: Board, env: str, entry_link: Callable[[str], Child], links: Links) -> Markup:
@@ -79,8 +79,8 @@ def task_section(board: Board, env: str, entry_link: Callable[[str], Child], lin
     plot = [_interval_row(name, task) for name, task in sorted(ranked, key=lambda one: -one[1].success)]
     return section(
         f"{env}-{_anchor(board)}",
-        f"Disturbances {board.condition.disturbances}",
-        _groups(head, rows, f"{env}, {board.condition.disturbances}"),
+        f"Disturbances {board.label}",
+        _groups(head, rows, f"{env}, {board.label}"),
         figures(figure("Success with 95 % intervals", _plot(plot, f"Success in {env}"))),
     )
 
@@ -123,7 +123,7 @@ def history_section(board: Board, name: str, links: Links) -> Markup | None:
     )
     return section(
         f"history-{_anchor(board)}",
-        f"Disturbances {board.condition.disturbances}",
+        f"Disturbances {board.label}",
         figures(*drawings),
         table(f"Runs of {name}", head, rows, numbers_from=2),
     )
@@ -172,4 +172,4 @@ def _version(run: Run) -> str:
 
 
 def _anchor(board: Board) -> str:
-    return "".join(letter if letter.isalnum() else "-" for letter in board.condition.disturbances)
+    return "".join(letter if letter.isalnum() else "-" for letter in board.label)

@@ -93,11 +93,16 @@ def matches_section(matches: Sequence[tuple[Match, Child]]) -> Markup:
     rows: list[Row] = []
     for match, links in matches:
         games = [PlayedGame(record, None) for record in match.records]
-        players = _players(games, match.manifest.options.home if match.manifest else games[0].record.job.home)
-        short = short_names(players)
-        counts = (str(value) for value in (len(games), *_outcomes(games, players[0])))
-        title = " – ".join(short[player] for player in players)
-        rows.append((title, match.created[:10], *counts, match.disturbances, links))
+        first = games[0].record.job
+        home, away = (
+            (match.manifest.options.home, match.manifest.options.away) if match.manifest else (first.home, first.away)
+        )
+        short = short_names(list({home: None, away: None}))
+        won, drawn, lost = (str(value) for value in _outcomes(games, home))
+        if home == away:
+            won = lost = "–"
+        title = f"{short[home]} – {short[away]}"
+        rows.append((title, match.created[:10], str(len(games)), won, drawn, lost, match.disturbances, links))
     head = ("match", "begun", "games", "won", "drawn", "lost", "disturbances", "see")
     return section("matches", "Matches", table("Matches, seen from their first player", head, rows, numbers_from=2))
 

@@ -1,6 +1,5 @@
 """Live shows: an agent at a task, or two in a game, played while one looks on."""
 
-import sys
 from dataclasses import replace
 from typing import Any
 
@@ -22,11 +21,13 @@ from airhockey.evaluator.records import Options
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.episodes import ACHIEVED
 from airhockey.viewing.games import NEWS_STEPS, told
-from airhockey.viewing.marks import Mark, target
+from airhockey.viewing.marks import TARGETS, Mark, path, target
 from airhockey.viewing.show import predicted_path
 from airhockey.viewing.stage import Stage
 
 Array = NDArray[np.float64]
+AHEAD = 0.15
+"""How far ahead a commanded motion is drawn, in [s]."""
 
 
 class OpenPlayer(Player):
@@ -81,7 +82,7 @@ class LiveTask:
             self._fail(failure)
         seed = seeding.seed_of(self._options.seed, self._name, self.episode, seeding.ENVIRONMENT)
         self._observation = setting.env.reset(seed=seed)
-        self._command: Array | None = None
+        self._action: Any = None
         self.stage.copy_state(setting.env.simulation.data)
 
     def advance(self) -> bool:
@@ -98,7 +99,7 @@ class LiveTask:
             self._fail(failure)
             return False
         self.step += 1
-        self._command = commanded(action)
+        self._action = action
         self._note(env, info)
         self.stage.copy_state(env.simulation.data)
         return True
@@ -124,7 +125,7 @@ class LiveTask:
     def marks(self) -> list[Mark]:
         """See `Show`."""
         base = self._setting.env.base_observation
-        return predicted_path(base[:3], base[3:6]) + mallet_target(self.stage, 0, self._setting.agent, self._command)
+        return predicted_path(base[:3], base[3:6]) + mallet_target(self.stage, 0, self._setting.agent, self._action)
 
     def _note(self, env: Any, info: Any) -> None:
         self._now = [name for name, value in info["constraints_value"].items() if (np.asarray(value) > 0.0).any()]
@@ -234,33 +235,45 @@ class LiveGame:
         base = game.env.base_observation
         marks = predicted_path(base[:3], base[3:6])
         for k in range(len(SIDES)):
-            marks += mallet_target(self.stage, k, game.competitors[k].agent, game.competitors[k].command)
+            action = game.competitors[k].action if self.step else None
+            marks += mallet_target(self.stage, k, game.competitors[k].agent, action)
         return marks
 
 
-def commanded(action: Any) -> Array:
-    """The joint position that an action leads to; only what is drawn depends on it. Shape (n,)."""
+def commanded(action: Any) -> tuple[Array, Array]:
+    """Joint position and velocity that an action leads to, whatever its order; at rest where it names no velocity.
+
+    Args:
+        action: As an agent gives it: (n,), (2, n), (3, n) or the set-points (20, 3, n).
+
+    Returns:
+        In [rad] and [rad/s]. Shapes (n,), (n,).
+    """
     array = np.asarray(action, dtype=np.float64)
-    while array.ndim > 1:
-        array = array[-1] if array.ndim == 3 else array[0]
-    return array
+    if array.ndim == 3:
+        array = array[-1]
+    return (array, np.zeros_like(array)) if array.ndim == 1 else (array[0], array[1])
 
 
-def mallet_target(stage: Stage, player: int, agent: Any, command: Array | None) -> list[Mark]:
-    """Where an agent wants its mallet: what it says as `target` (x and y, seen from its own side), or else what it commands.
+def mallet_target(stage: Stage, player: int, agent: Any, action: Any) -> list[Mark]:
+    """Where an agent wants its mallet, and a line there from where it commands it now.
+
+    That is what the agent says as `target` (x and y on the table, seen from its own side), or else where the motion that it
+    commands would lead within `AHEAD`.
 
     Args:
         stage: Of the game.
         player: 0 or 1.
         agent: It may have `target`.
-        command: Joint position that it commands. Shape (n,); None before the first step.
+        action: What it sent last; None before the first step.
     """
-    wanted = getattr(agent, "target", None)
-    try:
-        if wanted is not None:
-            side = 1.0 if player == 0 else -1.0
-            return [target((side * float(wanted[0]), side * float(wanted[1])), player)]
-        return [] if command is None else [target(stage.tip_position(player, command).tolist(), player)]
-    except (TypeError, ValueError, IndexError) as error:  # another's attribute of the same name
-        print(f"hockey: cannot draw the target of player {player + 1}: {error}", file=sys.stderr)
+    if action is None:
         return []
+    position, velocity = commanded(action)
+    tip = stage.tip_position(player, position)[:2]
+    wanted = getattr(agent, "target", None)
+    if wanted is None:
+        wanted = stage.tip_position(player, position + AHEAD * velocity)[:2]
+    else:
+        wanted = np.asarray(wanted, dtype=np.float64)[:2] * (1.0 if player == 0 else -1.0)
+    return [target(wanted.tolist(), player), *path(np.stack([tip, wanted]), TARGETS[player], fades=False)]

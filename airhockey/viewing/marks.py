@@ -15,6 +15,8 @@ Color = tuple[float, float, float, float]
 PREDICTED: Color = (0.98, 0.62, 0.10, 0.9)
 TRAIL: Color = (0.85, 0.15, 0.12, 0.55)
 TARGETS: tuple[Color, Color] = ((0.12, 0.42, 0.86, 0.75), (0.10, 0.60, 0.32, 0.75))
+TARGET_RADIUS = 0.025
+"""Of the disc where a mallet is wanted, in [m]."""
 _HEIGHT = 0.006  # [m] above the table
 _WIDTH = 0.006  # [m]
 
@@ -55,7 +57,7 @@ def path(points: Array, color: Color, fades: bool = True, width: float = _WIDTH)
 def target(point: Sequence[float], player: int) -> Mark:
     """Where player 0 or 1 wants its mallet, as a disc on the table; x and y in [m]."""
     place = (float(point[0]), float(point[1]), _HEIGHT)
-    return Mark(place, place, 0.022, TARGETS[player])
+    return Mark(place, place, TARGET_RADIUS, TARGETS[player])
 
 
 def geoms(marks: Iterable[Mark]) -> list[Any]:

@@ -113,9 +113,9 @@ class Competitor:
         return np.asarray(action if action.ndim == 1 else action[0])
 
     @property
-    def command(self) -> Array | None:
-        """The joint position that it commanded last, in [rad]; before that where a serve found it. Shape (n,)."""
-        return self._position
+    def action(self) -> Array:
+        """What it sent last; zeros before that."""
+        return self._action
 
     @property
     def commands_the_absurd(self) -> bool:

@@ -13,7 +13,7 @@ from airhockey.errors import AirHockeyError, ConfigurationError
 from airhockey.evaluator.disk import replace_file
 from airhockey.reporting import words
 from airhockey.reporting.leaderboard import write_site
-from airhockey.reporting.report import report
+from airhockey.reporting.document import report
 
 
 def make_report(given: Mapping[str, Any]) -> int:

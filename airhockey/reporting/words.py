@@ -43,7 +43,8 @@ def milliseconds(seconds: float) -> str:
 
 def p_value(value: float) -> str:
     """A p-value; below 0.0001 only that."""
-    return "p < 0.0001" if value < 1e-4 else f"p = {value:.2g}"
+    said = "p < 0.0001" if value < 1e-4 else f"p = {value:.2g}"
+    return said.replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def clock(step: int, period: float = 0.02) -> str:

@@ -7,11 +7,12 @@ import msgspec
 
 from airhockey.evaluator.judging import wilson_interval
 from airhockey.reporting import statistics, words
-from airhockey.reporting.blocks import badge, figure, figures, paragraphs, section, table, tables
+from airhockey.reporting.blocks import figure, figures, paragraphs, section, table, tables
 from airhockey.reporting.draw.axes import Scale
 from airhockey.reporting.draw.intervals import Interval, interval_plot
 from airhockey.reporting.markup import Markup
 from airhockey.reporting.results import Task
+from airhockey.reporting.sections.quantities import side_by_side
 from airhockey.reporting.statistics import Difference
 
 SIGNIFICANT = 0.05
@@ -69,7 +70,7 @@ def comparison_section(env: str, tasks: Sequence[Task]) -> Markup:
         paragraphs(filter(None, [several, *_caveats(tasks)]), "note"),
         figures(_success(env, tasks), _differences(found)),
         tables(
-            ("Side by side", _side_by_side(tasks)),
+            ("Side by side", side_by_side(f"{env}, side by side", tasks, [task.label for task in tasks])),
             *(("Episode by episode", _pairs_table(one)) for one in found if one.pairs is not None),
         ),
     )
@@ -151,25 +152,6 @@ def _differences(found: Sequence[Comparison]) -> Markup:
     title = "Differences of success: " + "; ".join(f"{row.label} {row.value} points" for row in rows)
     drawing = interval_plot(rows, scale, "percentage points", title, mark=0.0)
     return figure(f"Difference to {found[0].second.label}, with 95 % intervals", drawing)
-
-
-def _side_by_side(tasks: Sequence[Task]) -> Markup:
-    kinds = list(dict.fromkeys(name for task in tasks for name in task.violations))
-    rows = [
-        ("success", *(words.percent(task.success) for task in tasks)),
-        ("95 % interval", *(words.interval(task.successes, task.episodes) for task in tasks)),
-        ("episodes", *(f"{task.episodes:,}" for task in tasks)),
-        ("penalty points", *(f"{task.penalty:g}" for task in tasks)),
-        ("deployability", *(badge(task.deployability) for task in tasks)),
-        *(
-            (f"{words.constraint(name)} violated", *(str(task.violations.get(name, "–")) for task in tasks))
-            for name in kinds
-        ),
-        ("mean time of draw_action", *(words.milliseconds(task.computation_time[0]) for task in tasks)),
-        ("longest", *(words.milliseconds(task.computation_time[2]) for task in tasks)),
-        ("failed by the agent", *(str(task.failures) for task in tasks)),
-    ]
-    return table("Side by side", ("", *(task.label for task in tasks)), rows)
 
 
 def _pairs_table(comparison: Comparison) -> Markup:

@@ -46,7 +46,7 @@ def _margins(name: str, margins: Margins) -> Markup:
             f"Margin of {words.constraint(name)} against its limit in {len(values)} steps: {says}.",
             log_y=True,
             rules=[(0.0, "limit")],
-            include=-high if high > 0.0 else 0.0,
+            include=0.0,
         ),
         data=table(f"Steps by value of {name}", (unit or "value", "steps"), rows),
     )

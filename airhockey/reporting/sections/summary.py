@@ -1,48 +1,41 @@
 """What came out, in one table; what is missing; and under which conditions it was played."""
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
+import msgspec
+
+from airhockey.envs.disturbances import Disturbances
 from airhockey.envs.editions import edition
 from airhockey.evaluator.judging import PHASES
 from airhockey.evaluator.judging import score as phase_score
 from airhockey.reporting import words
-from airhockey.reporting.blocks import badge, details, facts, paragraphs, section, table
-from airhockey.reporting.markup import Child, Markup, element
+from airhockey.reporting.blocks import Row, badge, details, facts, paragraphs, section, table
+from airhockey.reporting.markup import Child, Markup, element, joined
 from airhockey.reporting.results import OFFICIAL_EPISODES, Task
+from airhockey.reporting.sections.quantities import FEW, kinds_of, one_below_another, quantities, side_by_side
 from airhockey.reporting.sources import Match, Nothing, Run, Source, Tournament, short_name
 
 
 def summary(tasks: Sequence[Task]) -> Markup:
     """The results of all tasks of all runs."""
-    kinds = list(dict.fromkeys(name for task in tasks for name in task.violations))
-    head = [
-        "task",
-        "agent",
-        "success",
-        "95 % interval",
-        "episodes",
-        "penalty points",
-        "deployability",
-        *(f"{words.constraint(name)} violated" for name in kinds),
-        "mean time",
-        "p99",
-        "longest",
-        "failed",
-    ]
-    rows = [_row(task, kinds) for task in tasks]
+    caption = "Results by task and agent"
     sentences = [
-        "Violated counts episodes; each constraint costs its points once per episode. Times are those of draw_action, of which "
-        "a control step leaves 20 ms. Failed are episodes that the agent ended by an error; they count as no success."
+        "Violations count episodes; each costs its points once per episode. A control step leaves draw_action 20 ms. An "
+        "episode that the agent failed by an error is no success."
     ]
     if any(task.episodes != OFFICIAL_EPISODES for task in tasks):
         sentences.append(f"Deployability is the class of the penalty at the rate of {OFFICIAL_EPISODES} episodes.")
+    if len(tasks) == 1:
+        kinds = kinds_of(tasks)
+        shown = joined(_key_figures(tasks[0]), facts(quantities(tasks[0], kinds)[5 : 6 + len(kinds)]))
+    elif len(tasks) <= FEW:
+        shown = side_by_side(caption, tasks, [f"{task.env}: {task.label}" for task in tasks])
+    else:
+        shown = one_below_another(caption, tasks)
+        sentences.insert(0, "Under a constraint's name stands in how many episodes it was violated.")
     return section(
-        "summary",
-        "Summary",
-        _key_figures(tasks[0]) if len(tasks) == 1 else None,
-        table("Results by task and agent", head, rows, numbers_from=2),
-        paragraphs([*_phases(tasks)], "lead"),
-        paragraphs(sentences, "note"),
+        "summary", "Summary", shown, paragraphs(_phases(tasks), "lead"), paragraphs([" ".join(sentences)], "note")
     )
 
 
@@ -56,29 +49,18 @@ def missing(sources: Iterable[Source]) -> Markup | None:
 
 
 def conditions(sources: Iterable[Source], labels: dict[int, str]) -> Markup:
-    """Where the results come from and under which conditions they were played."""
+    """Where the results come from and under which conditions they were played, side by side."""
     shown = [source for source in sources if not isinstance(source, Nothing)]
+    columns = [_conditions_of(source) for source in shown]
+    names = list(dict.fromkeys(name for column in columns for name in column))
+    rows: list[Row] = [(name, *(column.get(name, "–") for column in columns)) for name in names]
+    profiles = {source.manifest.profile: None for source in shown if source.manifest}
     return section(
-        "conditions", "Conditions", *(_conditions_of(source, labels.get(id(source), "")) for source in shown)
+        "conditions",
+        "Conditions",
+        table("Conditions by folder", ("", *(labels[id(source)] for source in shown)), rows, numbers_from=99),
+        *(details(f"Disturbances {profile.profile} in full", facts(_flat(profile))) for profile in profiles),
     )
-
-
-def _row(task: Task, kinds: Sequence[str]) -> list[Child]:
-    mean, p99, longest = task.computation_time
-    return [
-        task.env,
-        task.label,
-        element("strong", words.percent(task.success)),
-        words.interval(task.successes, task.episodes),
-        f"{task.episodes:,}",
-        f"{task.penalty:g}",
-        badge(task.deployability),
-        *(str(task.violations.get(name, "–")) for name in kinds),
-        words.milliseconds(mean),
-        "–" if p99 is None else words.milliseconds(p99),
-        words.milliseconds(longest),
-        str(task.failures),
-    ]
 
 
 def _key_figures(task: Task) -> Markup:
@@ -106,29 +88,43 @@ def _phases(tasks: Sequence[Task]) -> list[str]:
     return said
 
 
-def _conditions_of(source: Run | Match | Tournament, label: str) -> Markup:
-    manifest = source.manifest
-    pairs: list[tuple[str, Child]] = [("folder", source.path.name), ("disturbances", source.disturbances)]
+def _conditions_of(source: Run | Match | Tournament) -> dict[str, str]:
+    """Name of a condition -> what it is, in the order in which they are shown."""
+    found = {"folder": source.path.name, "disturbances": source.disturbances}
     if isinstance(source, Run) and source.manifest:
         options = source.manifest.options
-        pairs += [
-            ("agent", short_name(options.agent)),
-            ("seed", str(options.seed)),
-            ("edition", options.edition),
-            ("interpolation order", str(options.interpolation_order)),
-            ("clock", options.clock),
-            ("isolation", options.isolate),
-        ]
+        found |= {
+            "agent": short_name(options.agent),
+            "seed": str(options.seed),
+            "edition": options.edition,
+            "clock": options.clock,
+            "interpolation order": str(options.interpolation_order),
+            "isolation": options.isolate,
+        }
     elif not isinstance(source, Run) and source.manifest:
         game = source.manifest.options.game
-        pairs += [
-            ("seed", str(source.manifest.options.seed)),
-            ("edition", game.edition),
-            ("steps of a game", f"{game.steps:,}"),
-            ("rules", game.variant),
-            ("clock", game.clock),
-        ]
-    if manifest:
-        pairs.append(("begun", manifest.created.replace("T", " ")))
-        pairs += list(manifest.versions.items())
-    return details(label or source.path.name, facts(pairs))
+        found |= {
+            "seed": str(source.manifest.options.seed),
+            "edition": game.edition,
+            "clock": game.clock,
+            "steps of a game": f"{game.steps:,}",
+            "rules": game.variant,
+        }
+    if source.created:
+        found["begun"] = source.created.replace("T", " ")
+    return found | source.versions
+
+
+def _flat(profile: Disturbances) -> list[tuple[str, Child]]:
+    """Every figure of a profile by its path."""
+    pairs: list[tuple[str, Child]] = []
+    for name, value in msgspec.to_builtins(profile).items():
+        if isinstance(value, dict):
+            pairs += [(f"{name} {key}".replace("_", " "), _figure(part)) for key, part in value.items()]
+        elif name != "profile":
+            pairs.append((name, _figure(value)))
+    return pairs
+
+
+def _figure(value: Any) -> str:
+    return " – ".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)

@@ -21,7 +21,15 @@ def run(given: Mapping[str, Any]) -> int:
     """Film what was chosen; gives the exit status."""
     width, height = given["size"]
     options = FilmOptions(
-        width, height, given["fps"], given["speed"], given["highlights"], not given["no_inset"], given["quality"]
+        width=width,
+        height=height,
+        fps=given["fps"],
+        speed=given["speed"],
+        highlights=given["highlights"],
+        inset=not given["no_inset"],
+        quality=given["quality"],
+        seconds=given["seconds"],
+        at=given["at"],
     )
     out: Path = given["out"]
     check_film(out, width, height, options.fps)
@@ -34,7 +42,8 @@ def run(given: Mapping[str, Any]) -> int:
     except KeyboardInterrupt:
         click.echo("hockey: interrupted; nothing was written", err=True)
         return INTERRUPTED
-    click.echo(f"{out}: {frames} frames, {frames / options.fps:.1f} s, {out.stat().st_size / 1e6:.1f} MB")
+    length = "1 frame" if options.at is not None else f"{frames} frames, {frames / options.fps:.1f} s"
+    click.echo(f"{out}: {length}, {out.stat().st_size / 1e6:.2f} MB")
     return 0
 
 

@@ -23,10 +23,12 @@ def _size(ctx: Any, param: Any, value: str) -> tuple[int, int]:
     metavar="FILE",
     type=click.Path(path_type=Path),
     required=True,
-    help="The film: .mp4, .mkv, .mov or .gif.",
+    help="The film: .mp4, .mkv, .mov or .gif; or .png.",
 )
 @click.option("--episodes", metavar="K,…", help="Only these episodes or games, one after the other.  [default: all]")
 @click.option("--highlights", is_flag=True, help="Only goals, saves, faults and violations, with what led to them.")
+@click.option("--seconds", type=click.FloatRange(min=0.02), help="Only so much of each, from its start.")
+@click.option("--at", type=click.FloatRange(min=0), metavar="SECONDS", help="Only this moment, as a .png.")
 @click.option("--fps", type=click.FloatRange(1, 100), default=25, show_default=True, help="Frames per second.")
 @click.option("--speed", type=click.FloatRange(0.02, 50), default=1, show_default=True, help="Times as fast as it was.")
 @click.option(
@@ -51,8 +53,14 @@ def video(ctx: click.RichContext, /, **given: Any) -> None:
     \b
     hockey video runs/7dof-hit-baseline-s0 -o hit.mp4 --episodes 0,3,7
     hockey video runs/match-baseline-thesis-s0 -o best.mp4 --highlights
+    hockey video runs/match-baseline-thesis-s0 -o still.png --at 12.5 --quality fine
     hockey video runs/7dof-prepare-thesis-s0 -o prepare.gif --episodes 2 --size 480x270 --fps 20
     """
+    still = given["out"].suffix.lower() == ".png"
+    if still != (given["at"] is not None):
+        raise click.UsageError("a picture is of one moment, and a moment is a picture: -o FILE.png with --at SECONDS")
+    if still and given["episodes"] is None:  # the first of all
+        given["episodes"] = "0"
     from airhockey.commands._filming import run
 
     ctx.exit(run(given))

@@ -1,4 +1,4 @@
-"""Writing films frame by frame: H.264 with PyAV, GIF with Pillow. A film has its name once it is complete."""
+"""Writing films frame by frame: H.264 with PyAV, GIF and stills with Pillow. A film has its name once it is complete."""
 
 import contextlib
 import os
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from airhockey.errors import AirHockeyError, ConfigurationError, MissingDependencyError
 
 Picture = NDArray[np.uint8]
-FORMATS = (".mp4", ".mkv", ".mov", ".gif")
+FORMATS = (".mp4", ".mkv", ".mov", ".gif", ".png")
 INSTALL = "pip install 'airhockey[video]'"
 _QUALITY = "20"  # constant rate factor: smaller is better and larger
 _PALETTE = 128
@@ -41,18 +41,20 @@ def check_film(path: Path, width: int, height: int, fps: float) -> None:
         raise ConfigurationError(f"there is no folder {str(path.parent)!r} to put {path.name!r} in")
     if path.is_dir():
         raise ConfigurationError(f"{str(path)!r} is a folder: name a file")
-    gif = path.suffix.lower() == ".gif"
-    if not gif and (width % 2 or height % 2):
+    gif, still = path.suffix.lower() == ".gif", path.suffix.lower() == ".png"
+    if not (gif or still) and (width % 2 or height % 2):
         raise ConfigurationError(f"H.264 wants even sizes, not {width}x{height}")
     if gif and fps > 50:
         raise ConfigurationError(f"a GIF has at most 50 frames per second, not {fps:g}")
     try:
         import PIL  # noqa: F401
 
-        if not gif:
+        if not (gif or still):
             import av  # noqa: F401
     except ImportError as error:
-        raise MissingDependencyError(f"films need {'Pillow' if gif else 'PyAV and Pillow'}: {INSTALL}") from error
+        raise MissingDependencyError(
+            f"films need {'Pillow' if gif or still else 'PyAV and Pillow'}: {INSTALL}"
+        ) from error
 
 
 @contextlib.contextmanager
@@ -69,13 +71,37 @@ def open_film(path: Path, width: int, height: int, fps: float) -> Iterator[Film]
     """
     part = path.with_name(f".{path.name}.{os.getpid()}.part{path.suffix.lower()}")
     try:
-        with _Gif(part, fps) if path.suffix.lower() == ".gif" else _Video(part, width, height, fps) as film:
+        with _new_film(part, width, height, fps) as film:
             yield film
         part.replace(path)
     except OSError as error:
         raise AirHockeyError(f"cannot write {str(path)!r}: {' '.join(str(error).split())}") from error
     finally:
         part.unlink(missing_ok=True)
+
+
+def _new_film(path: Path, width: int, height: int, fps: float) -> "_Video | _Gif | _Still":
+    if path.suffix == ".png":
+        return _Still(path)
+    return _Gif(path, fps) if path.suffix == ".gif" else _Video(path, width, height, fps)
+
+
+class _Still:
+    """The last picture alone."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def __enter__(self) -> "_Still":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Nothing is left to do."""
+
+    def add(self, picture: Picture) -> None:
+        from PIL import Image
+
+        Image.fromarray(np.ascontiguousarray(picture)).save(self._path, format="PNG", optimize=True)
 
 
 class _Video:

@@ -89,9 +89,9 @@ def look_from_stands(robots: int, aspect: float) -> Any:
     """From the side, a little above: both robots and the whole table."""
     camera = mujoco.MjvCamera()
     two = robots == 2
-    camera.lookat[:] = (0.0, 0.05, 0.27) if two else (-0.26, 0.02, 0.24)
+    camera.lookat[:] = (0.0, 0.05, 0.22) if two else (-0.26, 0.02, 0.24)
     camera.azimuth, camera.elevation = (90.0, -31.0) if two else (80.0, -32.0)
-    camera.distance = (2.7 if two else 2.38) * max(1.0, (16 / 9) / aspect)
+    camera.distance = (2.66 if two else 2.38) * max(1.0, (16 / 9) / aspect)
     return camera
 
 

@@ -3,6 +3,7 @@
 import contextlib
 import logging
 import queue
+import socket
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -93,6 +94,7 @@ def view_of(transport: Transport) -> Any:
 
 def _launch_web(show: Show, host: str, port: int, open_browser: bool) -> tuple[Any, str, Any]:
     """The web viewer in a thread of its own; gives its handle, its address and what hears the panel."""
+    _check_address(host)
     with _needs_studio():
         from mujoco.studio import launch_thread, viewer_protocol, web_viewer
 
@@ -131,10 +133,30 @@ def _launch_web(show: Show, host: str, port: int, open_browser: bool) -> tuple[A
         with contextlib.suppress(BaseException):
             handle.close()
         raise ConfigurationError(f"cannot listen on {host}:{port}: {' '.join(str(bound).split())}") from bound
+    _wait_until_it_listens(host, bound)
     address = f"http://{f'[{host}]' if ':' in host else host}:{bound}/"
     if open_browser:
         _open(address)
     return handle, address, ears
+
+
+def _check_address(host: str) -> None:
+    """Whether this machine has the address: MuJoCo's viewer would only say that every port of it is taken."""
+    try:
+        family, kind, _, _, address = socket.getaddrinfo(host, 0, type=socket.SOCK_STREAM)[0]
+        with socket.socket(family, kind) as trial:
+            trial.bind(address)
+    except OSError as error:
+        raise ConfigurationError(f"cannot listen on {host!r}: {error.strerror or error}") from error
+
+
+def _wait_until_it_listens(host: str, port: int) -> None:
+    """The server's thread begins a moment after its socket is bound; the address is told once it answers."""
+    until = time.monotonic() + _STARTING
+    while time.monotonic() < until:
+        with contextlib.suppress(OSError), socket.create_connection((host, port), timeout=1.0):
+            return
+        time.sleep(0.02)
 
 
 def _answer(ports: "queue.Queue[int | BaseException]") -> int | BaseException:

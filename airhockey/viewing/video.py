@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.errors import ConfigurationError
 from airhockey.viewing.filming import Film, check_film, open_film
 from airhockey.viewing.highlights import frame_steps, highlight_spans
@@ -31,6 +32,8 @@ class FilmOptions:
         fps: Frames per second.
         speed: Times as fast as it was.
         highlights: Only what is worth seeing.
+        seconds: Only so much of each episode, from its start, in [s]; None for all of it.
+        at: Only this moment of each episode, in [s].
         inset: The view from above in a corner.
         quality: A key of `pictures.QUALITIES`.
     """
@@ -42,12 +45,17 @@ class FilmOptions:
     highlights: bool = False
     inset: bool = True
     quality: str = "good"
+    seconds: float | None = None
+    at: float | None = None
 
 
 def frames_of(recording: Recording, options: FilmOptions) -> list[int]:
     """The control step that each frame shows."""
+    if options.at is not None:
+        return [min(round(options.at / CONTROL_PERIOD), recording.steps)]
     first = recording.first_step if options.highlights else 0
-    spans = [(0, recording.steps)]
+    seconds = options.seconds if options.seconds is not None else recording.duration
+    spans = [(0, min(recording.steps, round(seconds / CONTROL_PERIOD)))]
     if options.highlights:
         spans = highlight_spans(recording.moments, recording.steps, first)
     return frame_steps(spans, options.fps, options.speed)

@@ -12,8 +12,8 @@ from rich.markup import escape
 from airhockey.errors import AirHockeyError, ConfigurationError
 from airhockey.evaluator.disk import replace_file
 from airhockey.reporting import words
-from airhockey.reporting.leaderboard import write_site
 from airhockey.reporting.document import report
+from airhockey.reporting.leaderboard import write_site
 
 
 def make_report(given: Mapping[str, Any]) -> int:

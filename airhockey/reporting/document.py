@@ -18,7 +18,7 @@ from airhockey.reporting.sections.games import PlayedGame
 from airhockey.reporting.sections.match import match_section, tournament_section
 from airhockey.reporting.sections.summary import conditions, missing, summary
 from airhockey.reporting.sections.task import task_section
-from airhockey.reporting.sources import Match, Nothing, Run, Source, Tournament, open_source
+from airhockey.reporting.sources import Match, Nothing, Run, Source, Tournament, open_source, reason
 
 Say = Callable[[str], None]
 _MOST_FILMS = 60
@@ -36,15 +36,15 @@ class Part:
 
 
 def report(
-    paths: Sequence[Path], say: Say = lambda _: None, title: str | None = None, back: str | None = None
+    paths: Sequence[Path], say: Say = lambda _: None, back: str | None = None, below: Path | None = None
 ) -> tuple[str, list[str]]:
     """The page of some folders.
 
     Args:
         paths: Folders of runs, matches and tournaments.
         say: Told what is being read.
-        title: Of the page; made of what is reported if not given.
-        back: Relative link to the page that this one belongs to.
+        back: Relative link to the leaderboard that the page belongs to.
+        below: The page shows paths below this folder.
 
     Returns:
         The page, and a line for everything that is missing.
@@ -63,14 +63,14 @@ def report(
     for number, source in enumerate(usable):
         if isinstance(source, (Match, Tournament)):
             parts.append(_game_part(source, f"games-{number}", say))
-    lost = missing(sources)  # after reading: that may have found more
+    lost = missing(sources, below)  # after reading: that may have found more
     parts = ([Part("missing", "What is missing", lost)] if lost else []) + parts
     parts.append(Part("conditions", "Conditions", conditions(usable, labels)))
     notes = [f"{source.path}: {note}" for source in sources for note in source.notes]
     links = contents([(part.identifier, part.name) for part in parts])
     if back:
         links.insert(0, (back, "← Leaderboard"))
-    heading = title or _title(usable, labels)
+    heading = _title(usable, labels)
     made = datetime.datetime.now().astimezone().strftime("%Y-%m-%d %H:%M")
     foot = f"Made by hockey {__version__} on {made} from {words.count(len(usable), 'folder')}."
     return page(heading, _subtitle(usable), [part.section for part in parts], links, foot), notes
@@ -120,7 +120,7 @@ def _data(run: Run, env: str) -> TaskData | None:
     try:
         return read_task(run.files, env)
     except _BROKEN as error:
-        run.notes.append(f"cannot read the trajectories of {env}: {' '.join(str(error).split())[:200]}")
+        run.notes.append(f"cannot read the trajectories of {env}: {reason(error, run.path)}")
         return None
 
 
@@ -150,9 +150,7 @@ def _game_part(source: Match | Tournament, identifier: str, say: Say) -> Part:
             try:
                 film = read_game(path, record)
             except _BROKEN as error:
-                source.notes.append(
-                    f"cannot read {path.relative_to(source.path)}: {' '.join(str(error).split())[:200]}"
-                )
+                source.notes.append(f"cannot read {path.relative_to(source.path)}: {reason(error, source.path)}")
         games.append(PlayedGame(record, film))
     if len(source.records) > _MOST_FILMS:
         source.notes.append(f"only the first {_MOST_FILMS} of {len(source.records)} films are analysed")

@@ -5,9 +5,10 @@ cannot be compared. Of several runs of a task the one counts that is nearest to 
 those the latest.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from airhockey.envs import ENVIRONMENTS
 from airhockey.envs.disturbances import Disturbances
 from airhockey.envs.editions import Edition
 from airhockey.evaluator.judging import CLASSES, PHASES, worst_class
@@ -71,7 +72,7 @@ class Board:
     @property
     def environments(self) -> list[str]:
         """Those that anybody played."""
-        return list(dict.fromkeys(env for by_env in self.results.values() for env in by_env))
+        return in_order({env for by_env in self.results.values() for env in by_env})
 
     def ranked(self, env: str) -> list[tuple[str, Task]]:
         """The entries of a task with the run that counts, best first within the better class first."""
@@ -116,6 +117,12 @@ def boards(tasks: Iterable[Task]) -> list[Board]:
             found[condition] = Board(condition, label)
         found[condition].results.setdefault(task.run.agent, {}).setdefault(task.env, []).append(task)
     return sorted(found.values(), key=lambda board: (-len(board.results), board.label))
+
+
+def in_order(environments: Collection[str]) -> list[str]:
+    """Environments in the order of the challenge, those of the 7-DoF robot first."""
+    known = [env for env in sorted(ENVIRONMENTS, key=lambda env: env[:4], reverse=True) if env in environments]
+    return known + sorted(set(environments) - set(known))
 
 
 def phases(rules: Edition) -> dict[str, Mapping[str, float]]:

@@ -10,7 +10,7 @@ from airhockey.envs.editions import available, edition
 from airhockey.errors import AirHockeyError, ConfigurationError
 from airhockey.reporting import words
 from airhockey.reporting.document import report
-from airhockey.reporting.entries import boards, phases
+from airhockey.reporting.entries import boards, in_order, phases
 from airhockey.reporting.markup import Markup
 from airhockey.reporting.page import link, page
 from airhockey.reporting.results import OFFICIAL_EPISODES, Task
@@ -79,13 +79,13 @@ class _Site:
     """
 
     def __init__(self, folder: Path, sources: Sequence[Source], site: SiteFolder) -> None:
-        self.sources, self.site = sources, site
+        self.folder, self.sources, self.site = folder, sources, site
         self.usable = [source for source in sources if not isinstance(source, Nothing)]
         self.slugs = {id(source): _slug_below(folder, source.path) for source in self.usable}
         runs = [source for source in self.usable if isinstance(source, Run)]
         self.boards = boards(Task(run, run.agent, env, run.of(env)) for run in runs for env in run.environments)
         self.entries = sorted({name for board in self.boards for name in board.results})
-        self.environments = list(dict.fromkeys(env for board in self.boards for env in board.environments))
+        self.environments = in_order({env for board in self.boards for env in board.environments})
         games = [source for source in self.usable if isinstance(source, (Match, Tournament))]
         self.games = sorted(games, key=lambda source: source.created, reverse=True)
 
@@ -94,7 +94,7 @@ class _Site:
         notes = [f"{source.path}: {note}" for source in self.sources for note in source.notes]
         for source in self.usable:
             say(f"reporting on {source.path}")
-            text, found = report([source.path], back=f"../{INDEX}")
+            text, found = report([source.path], back=f"../{INDEX}", below=self.folder)
             notes += found
             self.site.write(self._report_file(source), text)
             for video in _videos(source):
@@ -113,12 +113,13 @@ class _Site:
         return self.site.pages, list(dict.fromkeys(notes))
 
     def _overall(self) -> list[Markup]:
-        parts = [missing(self.sources)]
+        parts: list[Markup | None] = []
         for board in self.boards:
             known = board.condition.edition in available()
             rules = edition(board.condition.edition if known else available()[0])
             parts += [overall_section(board, phase, weights, self._entry) for phase, weights in phases(rules).items()]
-        return [part for part in parts if part is not None] + self._games(_LATEST)
+        parts += [*self._games(_LATEST), missing(self.sources, self.folder)]
+        return [part for part in parts if part is not None]
 
     def _history(self, name: str) -> list[Markup]:
         histories = [history_section(board, name, self._see) for board in self.boards]

@@ -155,14 +155,14 @@ def _open_run(path: Path) -> Run:
     try:
         run.manifest = read_manifest(path)
     except (ConfigurationError, OSError) as error:
-        run.notes.append(f"{error}; agent, seed and versions are unknown")
+        run.notes.append(f"{_why(error, path / RUN)}; agent, seed and versions are unknown")
     by_job: dict[Job, EpisodeRecord] = {}
     for file in _trajectory_files(run):
         try:
             by_job.update((record.job, record) for record in trajectories.read_records(file))
             run.files.append(file)
         except _BROKEN as error:
-            run.notes.append(f"cannot read {file.relative_to(path)}: {_one_line(error)}")
+            run.notes.append(f"cannot read {file.relative_to(path)}: {reason(error, path)}")
     stored = len(by_job)
     for record in _journal(run):
         by_job.setdefault(record.job, record)
@@ -191,7 +191,7 @@ def _journal(run: Run) -> list[EpisodeRecord]:
         records = read_journal(run.path)
         lines = (run.path / "journal.jsonl").read_bytes().splitlines()
     except OSError as error:
-        run.notes.append(f"cannot read journal.jsonl: {_one_line(error)}")
+        run.notes.append(f"cannot read journal.jsonl: {reason(error, run.path)}")
         return []
     if len(records) < len(lines):
         run.notes.append(f"{_count(len(lines) - len(records), 'line')} of journal.jsonl cannot be read")
@@ -216,13 +216,13 @@ def _open_games(
     try:
         games.manifest = read_game_manifest(games.path, name, kind)
     except (ConfigurationError, OSError) as error:
-        games.notes.append(f"{error}; options and versions are unknown")
+        games.notes.append(f"{_why(error, games.path / name)}; options and versions are unknown")
     try:
         games.records = read_games(games.path)
         journal = games.path / "journal.jsonl"
         lines = len(set(journal.read_bytes().splitlines())) if journal.exists() else 0
     except OSError as error:
-        games.notes.append(f"cannot read journal.jsonl: {_one_line(error)}")
+        games.notes.append(f"cannot read journal.jsonl: {reason(error, games.path)}")
         return games
     if not (games.path / "journal.jsonl").exists():
         games.notes.append("journal.jsonl is missing")
@@ -236,9 +236,16 @@ def _open_games(
     return games
 
 
+def _why(error: BaseException, manifest: Path) -> str:
+    """Why a manifest cannot be read, without the path of its folder, which stands beside the note."""
+    return reason(error, manifest.parent) if manifest.exists() else f"{manifest.name} is missing"
+
+
 def _count(number: int, what: str) -> str:
     return f"{number} {what}{'s' if number != 1 else ''}"
 
 
-def _one_line(error: BaseException) -> str:
-    return " ".join(str(error).split())[:200] or type(error).__name__
+def reason(error: BaseException, folder: Path) -> str:
+    """What went wrong in a folder, in a line, without the folder's path, which stands beside it."""
+    said = getattr(error, "strerror", None) or str(error) or type(error).__name__
+    return " ".join(said.replace(f"{folder}/", "").split())[:200]

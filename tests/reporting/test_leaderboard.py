@@ -186,3 +186,14 @@ def test_profiles_of_the_same_name_share_a_board_only_if_they_are_the_same() -> 
     profile = msgspec.structs.replace(wild.run.manifest.profile, delay=3)
     wild.run.manifest = msgspec.structs.replace(wild.run.manifest, profile=profile)
     assert len(boards([mild, wild])) == 2
+
+
+def test_a_site_shows_nobody_where_its_results_lay(site: Path) -> None:
+    for page in site.rglob("*.html"):
+        assert str(site.parent) not in page.read_text(), page.name
+    assert "<code>broken</code>" in (site / "index.html").read_text()
+
+
+def test_short_runs_are_marked(site: Path) -> None:
+    assert ">12*<" in (site / f"task-{ENV}.html").read_text()
+    assert "* fewer than 1000 episodes" in (site / f"task-{ENV}.html").read_text()

@@ -7,7 +7,7 @@ from airhockey.reporting import words
 from airhockey.reporting.blocks import Row, badge, figure, figures, paragraphs, section, table
 from airhockey.reporting.draw.axes import Scale
 from airhockey.reporting.draw.intervals import Interval, interval_plot
-from airhockey.reporting.entries import Board, Overall, counting
+from airhockey.reporting.entries import Board, Overall, counting, in_order
 from airhockey.reporting.markup import Child, Markup, element, joined
 from airhockey.reporting.page import link
 from airhockey.reporting.results import OFFICIAL_EPISODES, Task
@@ -91,7 +91,8 @@ def history_section(board: Board, name: str, links: Links) -> Markup | None:
     if not by_env:
         return None
     drawings, rows = [], []
-    for env, tasks in by_env.items():
+    for env in in_order(by_env):
+        tasks = by_env[env]
         plot = [_interval_row(f"{task.run.created[:16].replace('T', ' ')}", task) for task in tasks[-_LATEST:]]
         drawings.append(figure(f"{env}, the latest run last", _plot(plot, f"Success of {name} in {env}")))
         for task in reversed(tasks):
@@ -149,7 +150,7 @@ def _groups(head: Row, rows: Sequence[tuple[str, list[Child]]], what: str) -> Ma
 
 
 def _overall_row(one: Overall, weights: Mapping[str, float], entry_link: Callable[[str], Child]) -> list[Child]:
-    shares = [words.percent(one.tasks[env].success) for env in weights]
+    shares = [f"{words.percent(one.tasks[env].success)}{_star(one.tasks[env])}" for env in weights]
     return [entry_link(one.name), element("strong", f"{one.score:.3f}"), *shares, f"{one.penalty:g}"]
 
 
@@ -164,7 +165,12 @@ def _plot(rows: Sequence[Interval], what: str) -> Markup:
 
 
 def _episodes(task: Task) -> str:
-    return f"{task.episodes:,}" + ("*" if task.episodes < OFFICIAL_EPISODES else "")
+    return f"{task.episodes:,}{_star(task)}"
+
+
+def _star(task: Task) -> str:
+    """Marks runs that are shorter than an official evaluation; the foot of every page explains it."""
+    return "*" if task.episodes < OFFICIAL_EPISODES else ""
 
 
 def _version(run: Run) -> str:

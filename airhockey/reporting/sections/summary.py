@@ -1,6 +1,7 @@
 """What came out, in one table; what is missing; and under which conditions it was played."""
 
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -39,12 +40,17 @@ def summary(tasks: Sequence[Task]) -> Markup:
     )
 
 
-def missing(sources: Iterable[Source]) -> Markup | None:
-    """What could not be read, for every folder that lacks something; None where nothing does."""
-    rows = [(str(source.path), note) for source in sources for note in source.notes]
+def missing(sources: Iterable[Source], below: Path | None = None) -> Markup | None:
+    """What could not be read, for every folder that lacks something; None where nothing does.
+
+    Args:
+        sources: The folders.
+        below: Show paths below this folder, which is nobody else's business.
+    """
+    rows = [(source, note) for source in sources for note in source.notes]
     if not rows:
         return None
-    listed = [element("li", element("code", path), ": ", note) for path, note in rows]
+    listed = [element("li", element("code", _shown(source.path, below)), ": ", note) for source, note in rows]
     return element("section", element("h2", "What is missing"), element("ul", *listed), id="missing", class_="warning")
 
 
@@ -124,6 +130,10 @@ def _flat(profile: Disturbances) -> list[tuple[str, Child]]:
         elif name != "profile":
             pairs.append((name, _figure(value)))
     return pairs
+
+
+def _shown(path: Path, below: Path | None) -> str:
+    return str(path.relative_to(below)) if below is not None and path.is_relative_to(below) else str(path)
 
 
 def _figure(value: Any) -> str:

@@ -121,7 +121,7 @@ def test_runs_with_other_seeds_are_two_samples_and_the_page_says_what_else_diffe
     assert comparison.pairs is None
     said = words_of(report([results.holds, results.other])[0])
     assert "Fisher" in said
-    assert "so do disturbances and seed" in said
+    assert "disturbances and seed" in said
 
 
 def test_a_sentence_has_the_better_one_ahead(results: Results) -> None:
@@ -237,3 +237,9 @@ def test_a_tournament_page_has_standings_cross_table_and_ratings(results: Result
     for row in read_standings(results.tournament)[1].rows:
         assert f"{row.name} {row.points} {row.played} {row.won} {row.drawn}" in said
         assert f"{row.rating:.1f} ± {row.uncertainty:.1f}" in said
+
+
+def test_one_agent_under_two_conditions_is_not_called_two_agents(results: Results) -> None:
+    said = words_of(report([results.holds, results.other])[0])
+    assert "The agent has the same name in all of them; what differs: disturbances and seed." in said
+    assert "hold, ideal" in said and "hold, server" in said

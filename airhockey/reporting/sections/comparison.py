@@ -116,8 +116,13 @@ def _caveats(tasks: Sequence[Task]) -> list[str]:
         if len(values) > 1:
             differing.append(name.replace("_", " "))
     unknown = [task.label for task in tasks if task.run.manifest is None]
-    said = [f"Not only the agents differ: so do {words.enumeration(differing)} (see Conditions)."] if differing else []
-    return said + ([f"The conditions of {words.enumeration(unknown)} are unknown."] if unknown else [])
+    agents = {task.run.agent for task in tasks}
+    said = [f"The conditions of {words.enumeration(unknown)} are unknown."] if unknown else []
+    if differing and len(agents) == 1:
+        said.append(f"The agent has the same name in all of them; what differs: {words.enumeration(differing)}.")
+    elif differing:
+        said.append(f"Not only the agents differ: so do {words.enumeration(differing)} (see Conditions).")
+    return said
 
 
 def _condition(task: Task, name: str) -> str:

@@ -13,7 +13,7 @@ from airhockey.reporting.draw.timeline import SHOWN, timeline
 from airhockey.reporting.films import OUTCOMES, FilmData, Shot
 from airhockey.reporting.markup import Markup, element, joined
 
-_MOST_SHOTS = 250
+_MOST_SHOTS = 150  # of each outcome that are drawn
 _FLIGHT = 0.12  # [s] of flight that a shot's line shows
 _CLASSES = {"goal": "goal", "saved": "saved", "off target": "wide-of"}
 
@@ -90,16 +90,17 @@ def shots_block(games: Sequence[PlayedGame], players: Sequence[str], short: dict
     maps = [_shot_map(player, short.get(player, player), shots_of(player, filmed)) for player in players]
     rows = [_shot_row(player, short.get(player, player), filmed) for player in players]
     head = ("player", "touches", "shots", "on target", "goals", "saved", "median speed", "highest", "puck on its side")
+    note = (
+        "A shot is a hit after which the puck crosses the middle line before anybody touches it again; it is on target if "
+        "its path, mirrored at the rims, ends in the goal. All of this is read off the films."
+    )
+    if any(len(shots_of(player, filmed)) > _MOST_SHOTS for player in players):
+        note += f" At most {_MOST_SHOTS} shots of each outcome are drawn and listed."
     return joined(
         element("h3", "Shots and possession"),
         table("Shots by player", head, rows),
         figures(*maps, _puck_map(filmed) if len(players) == 2 else None),
-        element(
-            "p",
-            "A shot is a hit after which the puck crosses the middle line before anybody touches it again; it is on target if "
-            "its path, mirrored at the rims, ends in the goal. All of this is read off the films.",
-            class_="note",
-        ),
+        paragraphs([note], "note"),
     )
 
 

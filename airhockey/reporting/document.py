@@ -15,9 +15,10 @@ from airhockey.reporting.page import contents, page
 from airhockey.reporting.results import Task
 from airhockey.reporting.sections.comparison import comparison_section
 from airhockey.reporting.sections.games import PlayedGame
-from airhockey.reporting.sections.match import match_section, tournament_section
+from airhockey.reporting.sections.match import match_section
 from airhockey.reporting.sections.summary import conditions, missing, summary
 from airhockey.reporting.sections.task import task_section
+from airhockey.reporting.sections.tournament import tournament_section
 from airhockey.reporting.sources import Match, Nothing, Run, Source, Tournament, open_source, reason
 
 Say = Callable[[str], None]

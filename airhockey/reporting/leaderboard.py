@@ -15,8 +15,9 @@ from airhockey.reporting.markup import Markup
 from airhockey.reporting.page import link, page
 from airhockey.reporting.results import OFFICIAL_EPISODES, Task
 from airhockey.reporting.sections.board import history_section, overall_section, see, task_section
-from airhockey.reporting.sections.match import matches_section, standings_section
+from airhockey.reporting.sections.match import matches_section
 from airhockey.reporting.sections.summary import missing
+from airhockey.reporting.sections.tournament import standings_section
 from airhockey.reporting.site import SiteFolder, check_place, slug
 from airhockey.reporting.sources import MANIFESTS, Match, Nothing, Run, Source, Tournament, open_source
 

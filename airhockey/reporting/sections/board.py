@@ -11,7 +11,6 @@ from airhockey.reporting.entries import Board, Overall, counting, in_order
 from airhockey.reporting.markup import Child, Markup, element, joined
 from airhockey.reporting.page import link
 from airhockey.reporting.results import OFFICIAL_EPISODES, Task
-from airhockey.reporting.sources import Run
 
 Links = Callable[[Task], Child]
 """Gives the links of a run: its report and its videos."""
@@ -59,23 +58,7 @@ def task_section(board: Board, env: str, entry_link: Callable[[str], Child], lin
         "begun",
         "see",
     )
-    rows: list[tuple[str, list[Child]]] = [
-        (
-            task.deployability,
-            [
-                entry_link(name),
-                element("strong", words.percent(task.success)),
-                words.interval(task.successes, task.episodes),
-                _episodes(task),
-                f"{task.penalty:g}",
-                words.milliseconds(task.computation_time[0]),
-                words.milliseconds(task.computation_time[2]),
-                task.run.created[:10],
-                links(task),
-            ],
-        )
-        for name, task in ranked
-    ]
+    rows = [(task.deployability, _task_row(entry_link(name), task, links)) for name, task in ranked]
     plot = [_interval_row(name, task) for name, task in sorted(ranked, key=lambda one: -one[1].success)]
     return section(
         f"{env}-{_anchor(board)}",
@@ -92,24 +75,10 @@ def history_section(board: Board, name: str, links: Links) -> Markup | None:
         return None
     drawings, rows = [], []
     for env in in_order(by_env):
-        tasks = by_env[env]
-        plot = [_interval_row(f"{task.run.created[:16].replace('T', ' ')}", task) for task in tasks[-_LATEST:]]
+        plot = [_interval_row(_when(task), task) for task in by_env[env][-_LATEST:]]
         drawings.append(figure(f"{env}, the latest run last", _plot(plot, f"Success of {name} in {env}")))
-        for task in reversed(tasks):
-            rows.append(
-                (
-                    env,
-                    task.run.created[:16].replace("T", " "),
-                    words.percent(task.success),
-                    words.interval(task.successes, task.episodes),
-                    _episodes(task),
-                    f"{task.penalty:g}",
-                    badge(task.deployability),
-                    _version(task.run),
-                    "counts" if task is counting(tasks) else "",
-                    links(task),
-                )
-            )
+        counts = counting(by_env[env])
+        rows += [_history_row(task, links, task is counts) for task in reversed(by_env[env])]
     head = (
         "task",
         "begun",
@@ -154,6 +123,40 @@ def _overall_row(one: Overall, weights: Mapping[str, float], entry_link: Callabl
     return [entry_link(one.name), element("strong", f"{one.score:.3f}"), *shares, f"{one.penalty:g}"]
 
 
+def _task_row(entry: Child, task: Task, links: Links) -> list[Child]:
+    mean, _, longest = task.computation_time
+    return [
+        entry,
+        element("strong", words.percent(task.success)),
+        words.interval(task.successes, task.episodes),
+        _episodes(task),
+        f"{task.penalty:g}",
+        words.milliseconds(mean),
+        words.milliseconds(longest),
+        task.run.created[:10],
+        links(task),
+    ]
+
+
+def _history_row(task: Task, links: Links, counts: bool) -> list[Child]:
+    return [
+        task.env,
+        _when(task),
+        words.percent(task.success),
+        words.interval(task.successes, task.episodes),
+        _episodes(task),
+        f"{task.penalty:g}",
+        badge(task.deployability),
+        task.run.versions.get("airhockey", "–"),
+        "counts" if counts else "",
+        links(task),
+    ]
+
+
+def _when(task: Task) -> str:
+    return task.run.created[:16].replace("T", " ") or "unknown"
+
+
 def _interval_row(label: str, task: Task) -> Interval:
     low, high = wilson_interval(task.successes, task.episodes)
     return Interval(label, words.percent(task.success), 100 * low, 100 * task.success, 100 * high)
@@ -171,10 +174,6 @@ def _episodes(task: Task) -> str:
 def _star(task: Task) -> str:
     """Marks runs that are shorter than an official evaluation; the foot of every page explains it."""
     return "*" if task.episodes < OFFICIAL_EPISODES else ""
-
-
-def _version(run: Run) -> str:
-    return run.versions.get("airhockey", "–")
 
 
 def _anchor(board: Board) -> str:

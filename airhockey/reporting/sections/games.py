@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from airhockey.evaluator.games.records import AWAY, HOME, SIDES, GameRecord, PlayerResult, Side
+from airhockey.evaluator.games.records import AWAY, HOME, SIDES, Event, GameRecord, PlayerResult, Side
 from airhockey.reporting import words
 from airhockey.reporting.blocks import Row, badge, details, figure, figures, paragraphs, table, wide
 from airhockey.reporting.draw.table_map import arrows, cells, density_cells, table_map
@@ -62,19 +62,8 @@ def game_block(game: PlayedGame, short: dict[str, str], colour: dict[str, str]) 
         (classes[AWAY], f"{names[AWAY]} (away, right)"),
         ("shape", "● point  ▵ fault  ◇ violation  □ forfeit"),
     ]
-    rows = [
-        (
-            words.clock(event.step),
-            event.what,
-            names[event.who] if event.who else "–",
-            "–" if event.score is None else f"{event.score[0]} : {event.score[1]}",
-            event.why or "",
-        )
-        for event in events
-    ]
-    listed = table("Events", ("time", "event", "player", "score", "why"), rows, numbers_from=9) if rows else None
     return joined(
-        figure("Course of the game", drawing, legend=legend, data=listed),
+        figure("Course of the game", drawing, legend=legend, data=_events_table(events, names)),
         _figures_table(game, names),
         paragraphs(
             [f"{names[side]} failed: {game.player(side).failure}" for side in SIDES if game.player(side).failure]
@@ -187,6 +176,22 @@ def _puck_map(games: Sequence[PlayedGame]) -> Markup:
         table_map(title, cells(density_cells(where, 0.04, "looks")), left="← home", right="away →"),
         legend=legend,
     )
+
+
+def _events_table(events: Sequence[Event], names: dict[Side, str]) -> Markup | None:
+    if not events:
+        return None
+    rows = [
+        (
+            words.clock(event.step),
+            event.what,
+            names[event.who] if event.who else "–",
+            "–" if event.score is None else f"{event.score[0]} : {event.score[1]}",
+            event.why or "",
+        )
+        for event in events
+    ]
+    return table("Events", ("time", "event", "player", "score", "why"), rows, numbers_from=9)
 
 
 def _figures_table(game: PlayedGame, names: dict[Side, str]) -> Markup:

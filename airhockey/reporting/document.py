@@ -19,12 +19,11 @@ from airhockey.reporting.sections.match import match_section
 from airhockey.reporting.sections.summary import conditions, missing, summary
 from airhockey.reporting.sections.task import task_section
 from airhockey.reporting.sections.tournament import tournament_section
-from airhockey.reporting.sources import Match, Nothing, Run, Source, Tournament, open_source, reason
+from airhockey.reporting.sources import BROKEN, Match, Nothing, Run, Source, Tournament, open_source, reason
 
 Say = Callable[[str], None]
 _MOST_FILMS = 60
 """Films of a folder that are analysed; reading the film of a whole game takes about a third of a second."""
-_BROKEN = (OSError, KeyError, ValueError, RuntimeError, IndexError)
 
 
 @dataclass
@@ -120,7 +119,7 @@ def _data(run: Run, env: str) -> TaskData | None:
     """The trajectories of a task; what cannot be read is noted."""
     try:
         return read_task(run.files, env)
-    except _BROKEN as error:
+    except BROKEN as error:
         run.notes.append(f"cannot read the trajectories of {env}: {reason(error, run.path)}")
         return None
 
@@ -150,7 +149,7 @@ def _game_part(source: Match | Tournament, identifier: str, say: Say) -> Part:
             say(f"reading {path}")
             try:
                 film = read_game(path, record)
-            except _BROKEN as error:
+            except BROKEN as error:
                 source.notes.append(f"cannot read {path.relative_to(source.path)}: {reason(error, source.path)}")
         games.append(PlayedGame(record, film))
     if len(source.records) > _MOST_FILMS:

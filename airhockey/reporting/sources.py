@@ -22,13 +22,17 @@ from airhockey.evaluator.store import TRAJECTORIES, read_journal, read_manifest
 RUN = "run.json"
 MANIFESTS = (RUN, MATCH, TOURNAMENT)
 AnyManifest = TypeVar("AnyManifest", bound=Manifest | MatchManifest | TournamentManifest)
-_BROKEN = (
+BROKEN = (
     OSError,
-    KeyError,
+    LookupError,
     ValueError,
+    TypeError,
+    AttributeError,
     RuntimeError,
+    MemoryError,
     msgspec.MsgspecError,
-)  # what h5py raises on files that are not whole
+)
+"""What reading a file raises whose bytes are not what they were, or that is somebody else's."""
 
 
 @dataclass
@@ -161,7 +165,7 @@ def _open_run(path: Path) -> Run:
         try:
             by_job.update((record.job, record) for record in trajectories.read_records(file))
             run.files.append(file)
-        except _BROKEN as error:
+        except BROKEN as error:
             run.notes.append(f"cannot read {file.relative_to(path)}: {reason(error, path)}")
     stored = len(by_job)
     for record in _journal(run):

@@ -1,9 +1,11 @@
 """Folders in every state: what is there is shown, what is missing is said."""
 
+import contextlib
 import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
+from random import Random
 
 import pytest
 from results import ENV, EPISODES, Results
@@ -161,3 +163,45 @@ def test_names_come_without_other_peoples_paths() -> None:
     assert short_name("/home/somebody/mine/air_hockey_agent") == "mine"
     assert short_name("/home/somebody/mine-0.1.0.zip") == "mine-0.1.0"
     assert short_name("tcp://host:1234") == "tcp://host:1234"
+
+
+def change_bytes(file: Path, random: Random) -> None:
+    """Cut a file, overwrite some of its bytes, or replace it."""
+    content = bytearray(file.read_bytes())
+    ways = random.randrange(3)
+    if ways == 0:
+        del content[random.randrange(len(content) + 1) :]
+    elif ways == 1 and content:
+        for _ in range(random.choice([1, 5, 50])):
+            content[random.randrange(len(content))] = random.randrange(256)
+    else:
+        content = bytearray(random.randbytes(1000))
+    file.write_bytes(content)
+
+
+@pytest.mark.parametrize("name", ["swings", "match", "tournament"])
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # numbers made of changed bytes overflow
+def test_whatever_bytes_changed_there_is_a_page_or_a_reason(results: Results, copy: Copy, name: str) -> None:
+    for seed in range(20):
+        folder = copy(getattr(results, name), f"copy{seed}")
+        random = Random(seed)
+        files = sorted(path for path in folder.rglob("*") if path.is_file())
+        for file in random.sample(files, min(2, len(files))):
+            change_bytes(file, random)
+        with contextlib.suppress(ConfigurationError):
+            page, _ = report([folder])
+            assert page.endswith("</html>\n")
+
+
+def test_a_line_of_a_journal_that_is_no_text_is_said_and_the_others_are_read(results: Results, copy: Copy) -> None:
+    for name, read in (("swings", EPISODES - 1), ("match", 1)):
+        folder = copy(getattr(results, name), name)
+        lines = (folder / "journal.jsonl").read_bytes().splitlines(keepends=True)
+        lines[0] = lines[0].replace(b"violations", b"violati\xffns", 1)
+        (folder / "journal.jsonl").write_bytes(b"".join(lines))
+        for file in folder.glob("*.h5"):
+            file.unlink()
+        source = open_source(folder)
+        assert not isinstance(source, Nothing)
+        assert len(source.records) == read
+        assert any("1 line of journal.jsonl cannot be read" in note for note in source.notes)

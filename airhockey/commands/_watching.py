@@ -65,6 +65,8 @@ def _watch(show: Any, given: Mapping[str, Any]) -> int:
         watch(show, given["host"], given["port"], given["window"], not given["no_browser"] and _has_display(), say)
     except KeyboardInterrupt:
         click.echo("", err=True)
+    finally:
+        show.close()
     return 0
 
 

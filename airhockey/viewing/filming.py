@@ -16,6 +16,8 @@ Picture = NDArray[np.uint8]
 FORMATS = (".mp4", ".mkv", ".mov", ".gif", ".png")
 INSTALL = "pip install 'airhockey[video]'"
 _QUALITY = "20"  # constant rate factor: smaller is better and larger
+MOST_GIF_FRAMES = 1500
+"""They are held in memory until the last one, and no page wants to load more."""
 _PALETTE = 128
 _SWATCH = 0.02
 """Share of the picture's height that each small but telling colour gets when the palette is chosen."""

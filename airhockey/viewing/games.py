@@ -87,8 +87,8 @@ def game_recording(name: str, film: Array, record: GameRecord | None) -> Recordi
     events = record.events if record else ()
     goals = [event.step for event in events if event.what == "goal"]
     moments = [told(event, players) for event in events]
-    for step, k in saves(film[:, :2], film[:, 3:5], mallets, goals):
-        moments.append(Moment(step, "save", k, f"{players[k]} saves"))
+    for step, k, speed in saves(film[:, :2], film[:, 3:5], mallets, goals):
+        moments.append(Moment(step, "save", k, f"{players[k]} saves", speed))
     moments.sort(key=lambda moment: moment.step)
     title = f"game {name}" if record else f"game {name} (no record: score unknown)"
     narrator = GameNarrator(title, players, events, moments)

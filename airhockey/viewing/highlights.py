@@ -8,6 +8,8 @@ from airhockey.viewing.recording import Moment
 KINDS = frozenset({"goal", "save", "fault", "point", "violation", "prepared", "forfeit"})
 BEFORE, AFTER = 2.0, 1.0
 """Shown before and after a moment, in [s]."""
+MOST_SAVES = 12
+"""Of the saves of a game only those of the hardest shots are shown: good players save every few seconds."""
 Span = tuple[int, int]
 """First and last control step of a part, both shown."""
 
@@ -25,13 +27,20 @@ def highlight_spans(
     """
     spans: list[Span] = []
     ahead, behind = round(before / CONTROL_PERIOD), round(after / CONTROL_PERIOD)
-    for step in sorted(moment.step for moment in moments if moment.what in KINDS):
+    for step in sorted(moment.step for moment in worth_seeing(moments)):
         begin, end = max(step - ahead, first), min(step + behind, steps)
         if spans and begin <= spans[-1][1] + 1:
             spans[-1] = spans[-1][0], max(end, spans[-1][1])
         else:
             spans.append((begin, end))
     return spans
+
+
+def worth_seeing(moments: Iterable[Moment]) -> list[Moment]:
+    """Everything of the `KINDS`, but of the saves only so many."""
+    seen = [moment for moment in moments if moment.what in KINDS]
+    hardest = sorted((moment for moment in seen if moment.what == "save"), key=lambda moment: -moment.speed)
+    return [moment for moment in seen if moment.what != "save"] + hardest[:MOST_SAVES]
 
 
 def frame_steps(spans: Iterable[Span], fps: float, speed: float) -> list[int]:

@@ -1,5 +1,6 @@
 """Live shows: an agent at a task, or two in a game, played while one looks on."""
 
+import contextlib
 from dataclasses import replace
 from typing import Any
 
@@ -127,6 +128,10 @@ class LiveTask:
         base = self._setting.env.base_observation
         return predicted_path(base[:3], base[3:6]) + mallet_target(self.stage, 0, self._setting.agent, self._action)
 
+    def close(self) -> None:
+        """Tell the agent that it is over."""
+        self._player.close()
+
     def _note(self, env: Any, info: Any) -> None:
         self._now = [name for name, value in info["constraints_value"].items() if (np.asarray(value) > 0.0).any()]
         self._violated.update(self._now)
@@ -165,6 +170,7 @@ class LiveGame:
     def __init__(self, home: str, away: str, options: GameOptions, seed: int, episode: int = 0) -> None:
         self._agents, self._options, self._seed = (home, away), options, seed
         self._player = OpenGamePlayer(options, load_disturbances(options.disturbances))
+        self._game: Any = None
         self.stage = Stage("tournament", options.edition)
         self.begin(episode)
 
@@ -177,6 +183,7 @@ class LiveGame:
         """See `Show`."""
         self.episode, self.step, self.steps = max(episode, 0), 0, self._options.steps
         key = str(self.episode)
+        self.close()
         home, away = self._agents
         names = home.rpartition("/")[2], away.rpartition("/")[2]
         job = GameJob(key, *names, home, away, seeding.game_seed(self._seed, key))
@@ -200,6 +207,14 @@ class LiveGame:
 
     def seek(self, step: int) -> None:
         """What is live cannot be taken back."""
+
+    def close(self) -> None:
+        """Tell the players that the game is over."""
+        for agent in self._game.agents if self._game else ():
+            stop = getattr(agent, "stop", None)
+            if stop is not None:
+                with contextlib.suppress(*agent_failures()):
+                    stop()
 
     def caption(self) -> Caption:
         """See `Show`."""

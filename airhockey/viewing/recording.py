@@ -21,12 +21,14 @@ class Moment:
         what: "goal", "save", "fault", "point", "violation", "prepared", "stuck", "out", "serve", "held", "forfeit".
         who: 0 or 1, the player whom it is about; None for nobody in particular.
         text: One line about it, for people.
+        speed: Of the shot, for a save in a game, in [m/s].
     """
 
     step: int
     what: str
     who: int | None = None
     text: str = ""
+    speed: float = 0.0
 
 
 class Narrator(Protocol):

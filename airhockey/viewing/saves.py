@@ -32,7 +32,7 @@ def threats(puck: Array, velocity: Array, side: float) -> NDArray[np.bool_]:
     return (towards > THREAT_SPEED) & (side * puck[:, 0] > 0.0) & (np.abs(y) <= TABLE.goal_width / 2)
 
 
-def saves(puck: Array, velocity: Array, mallets: Array, goals: Iterable[int] = ()) -> list[tuple[int, int]]:
+def saves(puck: Array, velocity: Array, mallets: Array, goals: Iterable[int] = ()) -> list[tuple[int, int, float]]:
     """Where a mallet took the puck off its way into the goal.
 
     A save is a threat that ends within a few steps at which puck and the defender's mallet meet, without a goal.
@@ -43,7 +43,7 @@ def saves(puck: Array, velocity: Array, mallets: Array, goals: Iterable[int] = (
         goals: Steps (from 1) that ended with a goal.
 
     Returns:
-        Pairs of step (from 1) and player (0 or 1), in order.
+        Step (from 1), player (0 or 1) and the shot's speed in [m/s] of each, in order.
     """
     found = []
     for k, side in enumerate((-1.0, 1.0)):
@@ -53,7 +53,7 @@ def saves(puck: Array, velocity: Array, mallets: Array, goals: Iterable[int] = (
         for t in np.flatnonzero(threat[:-1] & ~threat[1:]).tolist():
             touched = bool(near[max(t - 1, 0) : t + AFTER].any())
             if touched and t - last >= _APART and not _goal_follows(t, list(goals)):
-                found.append((t + 2, k))
+                found.append((t + 2, k, float(np.hypot(*velocity[t]))))
                 last = t
     return sorted(found)
 

@@ -55,6 +55,9 @@ class Show(Protocol):
     def marks(self) -> list[Mark]:
         """What is to be drawn into the scene."""
 
+    def close(self) -> None:
+        """Let go of everything: it is over."""
+
 
 class RecordedShow:
     """Recordings, one after the other.
@@ -108,6 +111,9 @@ class RecordedShow:
         row = self._recording.row(self.step)
         puck, velocity = self._recording.puck[row], self._recording.puck_velocity[row]
         return trail(self._recording, row) + predicted_path(puck, velocity)
+
+    def close(self) -> None:
+        """Nothing is held."""
 
 
 def predicted_path(puck: Array, velocity: Array) -> list[Mark]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.errors import ConfigurationError
-from airhockey.viewing.filming import Film, check_film, open_film
+from airhockey.viewing.filming import MOST_GIF_FRAMES, Film, check_film, open_film
 from airhockey.viewing.highlights import frame_steps, highlight_spans
 from airhockey.viewing.library import Entry
 from airhockey.viewing.recording import Recording
@@ -91,6 +91,10 @@ def write_film(path: Path, entries: Sequence[Entry], options: FilmOptions, on_fr
             def count(before: int = done, expected: int = expected) -> Callable[[int], None]:
                 return lambda k: on_frame(before + k, expected) if on_frame is not None else None
 
+            if path.suffix.lower() == ".gif" and done + len(steps) > MOST_GIF_FRAMES:
+                raise ConfigurationError(
+                    f"a GIF of more than {MOST_GIF_FRAMES} frames: choose --episodes, --seconds or a lower --fps, or make an .mp4"
+                )
             if steps:
                 _render(film, recording, steps, options, count())
             done += len(steps)

@@ -27,6 +27,12 @@ def test_serves_and_held_commands_are_no_highlights() -> None:
     assert highlight_spans(moments(100, what="serve") + moments(200, what="held"), 1000) == []
 
 
+def test_of_many_saves_the_hardest_are_shown() -> None:
+    easy = [Moment(10_000 * k, "save", 0, speed=1.0) for k in range(1, 21)]
+    hard = [Moment(10_000 * k + 5000, "save", 1, speed=2.0) for k in range(1, 13)]
+    assert [end - 50 for _, end in highlight_spans(easy + hard, 10**6)] == [moment.step for moment in hard]
+
+
 def test_every_frame_shows_its_own_time() -> None:
     steps = frame_steps([(0, 50), (200, 210)], fps=25, speed=1.0)
     assert steps == [*range(2, 51, 2), *range(202, 211, 2)]
@@ -46,7 +52,7 @@ def flight(y_speed: float, touched: bool) -> tuple[np.ndarray, np.ndarray, np.nd
 def test_a_shot_that_a_mallet_turns_back_is_a_save() -> None:
     puck, velocity, mallets = flight(0.0, touched=True)
     turn = int(np.argmin(puck[:, 0]))
-    assert saves(puck, velocity, mallets) == [(turn + 1, 0)]
+    assert saves(puck, velocity, mallets) == [(turn + 1, 0, 2.0)]
 
 
 def test_what_no_mallet_touched_or_went_in_or_wide_is_no_save() -> None:

@@ -1,5 +1,6 @@
 """The stage shows what the simulation had; live shows are the evaluator's episodes and games."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -62,6 +63,16 @@ def test_a_live_task_is_the_runs_episode(run_folder: Path) -> None:
     assert show.caption().news in ("puck stopped", "not achieved")
     show.begin(0)
     assert show.step == 0 and show.caption().news == ""
+
+
+def test_an_agent_that_fails_ends_its_episode_not_the_show(submission: Callable[..., str]) -> None:
+    agent = submission("raise ValueError('no idea')")
+    show = LiveTask(Options(environments=("3dof-defend",), agent=agent))
+    while show.advance():
+        pass
+    assert "no idea" in show.caption().news
+    show.begin(1)
+    assert show.caption().news == ""
 
 
 def test_a_live_game_is_the_matchs_game() -> None:

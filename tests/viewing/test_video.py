@@ -56,6 +56,35 @@ def test_a_gif_keeps_time(hockey: Hockey, match_folder: Path) -> None:
     assert sum(durations) == pytest.approx(60 * STEP * 1000, abs=10)
 
 
+def test_highlights_of_episodes_are_what_led_to_a_success(hockey: Hockey, run_folder: Path) -> None:
+    assert [record.success for record in read_journal(run_folder)] == [False, False, True]
+    assert hockey(f"video {run_folder} -o f.mp4 --highlights {SMALL}")[0] == 0
+    assert len(frames(Path("f.mp4"))) == 2 * 25, "the two seconds before the puck was stopped"
+    assert hockey(f"video {run_folder} -o g.mp4 --highlights --episodes 0 {SMALL}")[0] == 2
+
+
+def test_the_beginning_of_every_episode(hockey: Hockey, run_folder: Path) -> None:
+    assert hockey(f"video {run_folder} -o f.mp4 --seconds 0.4 {SMALL}")[0] == 0
+    assert len(frames(Path("f.mp4"))) == 3 * 10
+
+
+def test_a_still_is_the_moment_asked_for(hockey: Hockey, match_folder: Path) -> None:
+    assert hockey(f"video {match_folder} -o a.png --at 0.5 {SMALL}")[0] == 0
+    assert hockey(f"video {match_folder} -o b.png --at 0.54 {SMALL}")[0] == 0
+    one, other = (np.asarray(Image.open(name)).astype(int) for name in ("a.png", "b.png"))
+    assert one.shape == (96, 160, 3)
+    clock = one[:8, 120:] - other[:8, 120:]
+    assert np.abs(clock).max() == 0, "0.5 and 0.54 are the same tenth"
+    assert hockey(f"video {match_folder} -o a.png {SMALL}")[0] == 2
+    assert hockey(f"video {match_folder} -o a.mp4 --at 1 {SMALL}")[0] == 2
+
+
+def test_a_gif_that_nobody_could_load_is_refused(hockey: Hockey, run_folder: Path) -> None:
+    status, _, err = hockey(f"video {run_folder} -o f.gif --speed 0.02 --fps 50 {SMALL}")
+    assert status == 2 and "GIF of more than" in err
+    assert not list(Path().iterdir())
+
+
 def test_a_film_that_fails_is_not_there(tmp_path: Path) -> None:
     (tmp_path / "f.mp4").write_bytes(b"the old one")
 

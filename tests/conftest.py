@@ -1,4 +1,4 @@
-"""Small agents as submission folders, and short runs of them."""
+"""Small agents as submission folders, short runs of them, and the command line in an empty folder."""
 
 import signal
 from collections.abc import Callable
@@ -6,8 +6,10 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from command_line import Hockey
 from outcomes import ENV
 
+from airhockey.cli import main
 from airhockey.evaluator import Options
 from submissions import make_submission
 
@@ -25,3 +27,18 @@ def submission(tmp_path: Path) -> Callable[..., str]:
 def options(submission: Callable[..., str]) -> Options:
     """A short run of an agent that draws from NumPy's global generator, under disturbances."""
     return Options(environments=(ENV,), agent=submission(), episodes=6, seed=3, disturbances="server")
+
+
+@pytest.fixture
+def hockey(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Hockey:
+    """Runs a command line in an empty folder; gives status, standard output and standard error."""
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+
+    def run(line: str) -> tuple[int, str, str]:
+        with pytest.raises(SystemExit) as end:
+            main(line.split())
+        out, err = capfd.readouterr()
+        return int(end.value.code or 0), out, err
+
+    return run

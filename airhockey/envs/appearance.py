@@ -4,12 +4,12 @@ from typing import Any
 
 import mujoco
 
-from airhockey.envs.specs import RobotSpec
+from airhockey.envs.specs import TABLE, RobotSpec
 
 Color = tuple[float, float, float, float]
 
-FLOOR: Color = (0.32, 0.35, 0.40, 1.0)
-SURFACE: Color = (0.93, 0.95, 0.97, 1.0)
+FLOOR: Color = (0.42, 0.45, 0.50, 1.0)
+SURFACE: Color = (0.90, 0.92, 0.94, 1.0)
 RIM: Color = (0.16, 0.22, 0.33, 1.0)
 RIM_TOP: Color = (0.16, 0.22, 0.33, 0.35)
 PUCK: Color = (0.85, 0.15, 0.12, 1.0)
@@ -20,6 +20,13 @@ JOINT_RING: Color = (0.95, 0.45, 0.10, 1.0)
 ROD: Color = (0.25, 0.27, 0.30, 1.0)
 LINE: Color = (0.20, 0.35, 0.75, 1.0)
 _PLAYERS: tuple[Color, Color] = ((0.12, 0.42, 0.86, 1.0), (0.10, 0.60, 0.32, 1.0))
+
+CIRCLE_RADIUS = 0.14
+"""Of the circle around the centre, in [m]."""
+PAINT = 0.0004
+"""Half the thickness of a line, in [m]."""
+SCENE_EXTENT = 2.2
+"""Half the size of what is to be seen, in [m]."""
 
 # Radius of the iiwa's shell at each link, in [m]: it tapers from shoulder to wrist.
 _SHELL_RADIUS = (0.082, 0.080, 0.074, 0.072, 0.066, 0.062, 0.045)
@@ -58,24 +65,34 @@ def add_tip(body: Any, robot: RobotSpec, number: int) -> None:
 
 def add_surroundings(spec: Any) -> None:
     """Light, cameras and the lines on the table."""
-    spec.worldbody.add_light(pos=(0, 0, 4), dir=(0, 0, -1), type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL)
-    spec.visual.headlight.ambient = (0.35, 0.35, 0.35)
-    spec.visual.headlight.diffuse = (0.45, 0.45, 0.45)
+    light = spec.worldbody.add_light(
+        pos=(-1.2, -1.6, 4), dir=(0.25, 0.35, -1), type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
+    )
+    light.diffuse, light.specular = (0.55, 0.55, 0.53), (0.12, 0.12, 0.12)
+    head = spec.visual.headlight
+    head.ambient, head.diffuse, head.specular = (0.34, 0.35, 0.37), (0.26, 0.26, 0.26), (0.06, 0.06, 0.06)
     spec.visual.global_.offwidth, spec.visual.global_.offheight = 1920, 1080
-    surface = spec.body("table_surface")
-    for x, half_width, rgba in ((0.0, 0.006, LINE), (-0.974, 0.003, PUCK), (0.974, 0.003, PUCK)):
-        half_length = 0.519 if x == 0.0 else 0.125
-        surface.add_geom(
-            type=mujoco.mjtGeom.mjGEOM_BOX,
-            size=(half_width, half_length, 0.0005),
-            pos=(x, 0, 0.0002),
-            rgba=rgba,
-            **_UNSEEN_BY_PHYSICS,
-        )
+    spec.stat.extent, spec.stat.center = SCENE_EXTENT, (0, 0, 0.2)  # of what matters: the floor would blur every shadow
+    _add_lines(spec.body("table_surface"))
     world = spec.worldbody
     world.add_camera(name="top", pos=(0, 0, 2.6), quat=(1, 0, 0, 0))
     world.add_camera(name="side", pos=(0, -2.5, 1.75), xyaxes=(1, 0, 0, 0, 0.58, 0.81))
     world.add_camera(name="home", pos=(-2.6, 0, 1.6), xyaxes=(0, -1, 0, 0.55, 0, 0.83))
+
+
+def _add_lines(surface: Any) -> None:
+    """Goal lines, middle line and centre circle: films of paint, each a little above the other."""
+    box, disc = mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_CYLINDER
+    half_length, half_width, goal = TABLE.length / 2, TABLE.width / 2, TABLE.goal_width / 2
+    paint = [
+        (disc, (CIRCLE_RADIUS, PAINT, 0), (0, 0), LINE),
+        (disc, (CIRCLE_RADIUS - 0.012, PAINT, 0), (0, 0), SURFACE),
+        (box, (0.006, half_width, PAINT), (0, 0), LINE),
+        (box, (0.004, goal, PAINT), (-half_length, 0), PUCK),
+        (box, (0.004, goal, PAINT), (half_length, 0), PUCK),
+    ]
+    for layer, (kind, size, (x, y), rgba) in enumerate(paint):
+        surface.add_geom(type=kind, size=size, pos=(x, y, layer * PAINT), rgba=rgba, **_UNSEEN_BY_PHYSICS)
 
 
 def _cylinder(

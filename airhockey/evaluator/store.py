@@ -168,6 +168,6 @@ def read_journal(path: Path) -> list[EpisodeRecord]:
     journal = path / "journal.jsonl"
     records = []
     for line in journal.read_bytes().splitlines() if journal.exists() else []:
-        with contextlib.suppress(msgspec.MsgspecError):
+        with contextlib.suppress(msgspec.MsgspecError, UnicodeDecodeError):
             records.append(msgspec.json.decode(line, type=EpisodeRecord))
     return records

@@ -113,6 +113,11 @@ class Competitor:
         return np.asarray(action if action.ndim == 1 else action[0])
 
     @property
+    def action(self) -> Array:
+        """What it sent last; zeros before that."""
+        return self._action
+
+    @property
     def commands_the_absurd(self) -> bool:
         """Whether its latest action is nothing that a robot could be sent."""
         return bool(np.abs(self._action).max() > HUGE)

@@ -147,7 +147,7 @@ def read_games(path: Path) -> list[GameRecord]:
     for line in journal.read_bytes().splitlines() if journal.exists() else []:
         try:
             record = msgspec.json.decode(line, type=GameRecord)
-        except msgspec.MsgspecError:
+        except (msgspec.MsgspecError, UnicodeDecodeError):
             continue
         records[record.job.key] = record
     return list(records.values())

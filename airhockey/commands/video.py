@@ -1,0 +1,66 @@
+"""`hockey video`: films of recorded episodes and games."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import rich_click as click
+
+
+def _size(ctx: Any, param: Any, value: str) -> tuple[int, int]:
+    """Read WIDTHxHEIGHT, 16 to 4096 pixels each way."""
+    match = re.fullmatch(r"(\d+)x(\d+)", value)
+    if match is None or not all(16 <= int(side) <= 4096 for side in match.groups()):
+        raise click.BadParameter(f"{value!r} is no size: give WIDTHxHEIGHT, each from 16 to 4096, like 960x540")
+    return int(match[1]), int(match[2])
+
+
+@click.command()
+@click.argument("run", metavar="RUN", type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--out",
+    metavar="FILE",
+    type=click.Path(path_type=Path),
+    required=True,
+    help="The film: .mp4, .mkv, .mov or .gif; or .png.",
+)
+@click.option("--episodes", metavar="K,…", help="Only these episodes or games, one after the other.  [default: all]")
+@click.option("--highlights", is_flag=True, help="Only goals, saves, faults and violations, with what led to them.")
+@click.option("--seconds", type=click.FloatRange(min=0.02), help="Only so much of each, from its start.")
+@click.option("--at", type=click.FloatRange(min=0), metavar="SECONDS", help="Only this moment, as a .png.")
+@click.option("--fps", type=click.FloatRange(1, 100), default=25, show_default=True, help="Frames per second.")
+@click.option("--speed", type=click.FloatRange(0.02, 50), default=1, show_default=True, help="Times as fast as it was.")
+@click.option(
+    "--size", metavar="WIDTHxHEIGHT", callback=_size, default="960x540", show_default=True, help="Of the picture."
+)
+@click.option("--no-inset", is_flag=True, help="Without the view from above.")
+@click.option(
+    "--quality",
+    type=click.Choice(["fast", "good", "fine"]),
+    default="good",
+    show_default=True,
+    help="fast: no shadows; fine: smooth edges.",
+)
+@click.option("--quiet", is_flag=True, help="No progress.")
+@click.pass_context
+def video(ctx: click.RichContext, /, **given: Any) -> None:
+    """Make a film of RUN: the folder of a run, match or tournament, or an official dataset.pkl.
+
+    The scene is rendered off-screen: no display is needed, but Mesa or a graphics driver is. Score, time and violations
+    are written over the picture. Needs the extra video: pip install 'airhockey[video]'.
+
+    \b
+    hockey video runs/7dof-hit-baseline-s0 -o hit.mp4 --episodes 0,3,7
+    hockey video runs/match-baseline-thesis-s0 -o best.mp4 --highlights
+    hockey video runs/match-baseline-thesis-s0 -o still.png --at 12.5 --quality fine
+    hockey video runs/7dof-prepare-thesis-s0 -o prepare.gif --episodes 2 --size 480x270 --fps 20
+    """
+    still = given["out"].suffix.lower() == ".png"
+    if still != (given["at"] is not None):
+        raise click.UsageError("a picture is of one moment, and a moment is a picture: -o FILE.png with --at SECONDS")
+    if still and given["episodes"] is None:  # the first of all
+        given["episodes"] = "0"
+    from airhockey.commands._filming import run
+
+    ctx.exit(run(given))

@@ -1,0 +1,133 @@
+"""Episodes of the official package's `dataset.pkl`.
+
+A pickle can run code, so it is read with an unpickler that knows nothing but NumPy's arrays and Python's plain containers.
+"""
+
+import io
+import pickle
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from airhockey.errors import ConfigurationError
+from airhockey.viewing.library import Entry, Library
+
+if TYPE_CHECKING:
+    from airhockey.viewing.recording import Recording
+
+Array = NDArray[np.float64]
+ADMITTED = frozenset(
+    {
+        ("builtins", name)
+        for name in ("list", "tuple", "dict", "set", "bool", "int", "float", "str", "bytes", "bytearray")
+    }
+    | {(f"numpy.{core}.multiarray", name) for core in ("core", "_core") for name in ("_reconstruct", "scalar")}
+    | {(f"numpy.{core}.numeric", "_frombuffer") for core in ("core", "_core")}
+    | {("numpy", "ndarray"), ("numpy", "dtype"), ("_codecs", "encode")}
+)
+"""What an official dataset is made of."""
+ENVIRONMENT_OF_WIDTH = {12: "3dof-hit", 20: "7dof-defend", 23: "7dof-hit", 46: "tournament"}
+"""An environment whose observations are this long, for datasets outside a folder named after theirs; the scene is the same."""
+_FIELDS = 6
+
+
+class DatasetUnpickler(pickle.Unpickler):
+    """Reads arrays and plain containers, and refuses everything else."""
+
+    def find_class(self, module: str, name: str) -> Any:
+        """Find what the pickle names, if it is admitted."""
+        if (module, name) not in ADMITTED:
+            raise pickle.UnpicklingError(f"it asks for {module}.{name}, which no dataset needs")
+        return super().find_class(module, name)
+
+
+def read_dataset(path: Path) -> list[tuple[Any, ...]]:
+    """The transitions of a dataset: (state, action, reward, next state, absorbing, last).
+
+    Raises:
+        ConfigurationError: It is no dataset, it is cut short, or it asks for more than arrays.
+    """
+    try:
+        content: Any = DatasetUnpickler(io.BytesIO(path.read_bytes())).load()
+    except OSError as error:
+        raise ConfigurationError(f"cannot read {str(path)!r}: {error.strerror}") from error
+    except Exception as error:  # a pickle that is not one fails in any way it likes
+        raise ConfigurationError(f"{str(path)!r} is not a dataset: {' '.join(str(error).split())}") from error
+    rows: list[tuple[Any, ...]] = content if isinstance(content, list) else []
+    whole = all(isinstance(row, tuple) and len(row) == _FIELDS for row in rows)
+    if not whole or not rows:
+        raise ConfigurationError(f"{str(path)!r} is not a dataset: not a list of transitions of {_FIELDS} parts")
+    return rows
+
+
+def episodes_of(transitions: Sequence[tuple[Any, ...]]) -> list[Array]:
+    """The observations of each episode, one more than it has steps. Each of shape (T + 1, d)."""
+    episodes, rows = [], []
+    for state, _, _, following, _, last in transitions:
+        rows.append(state)
+        if last:
+            episodes.append(np.asarray([*rows, following], dtype=np.float64))
+            rows = []
+    if rows:
+        episodes.append(np.asarray([*rows, following], dtype=np.float64))
+    return episodes
+
+
+def add_datasets(library: Library, paths: Sequence[Path]) -> None:
+    """Add the episodes of official datasets; those that cannot be read are noted, unless there is only one."""
+    for path in paths:
+        try:
+            _add(library, path, several=len(paths) > 1)
+        except ConfigurationError as error:
+            if len(paths) == 1:
+                raise
+            library.notes.append(str(error))
+
+
+def _add(library: Library, path: Path, several: bool) -> None:
+    from airhockey.envs import ENVIRONMENTS
+
+    try:
+        episodes = episodes_of(read_dataset(path))
+        width = episodes[0].shape[1]
+    except (ValueError, IndexError) as error:
+        raise ConfigurationError(f"{str(path)!r} is not a dataset: {error}") from error
+    folder = path.parent.name
+    env = folder if folder in ENVIRONMENTS else ENVIRONMENT_OF_WIDTH.get(width)
+    if env is None:
+        known = ", ".join(str(width) for width in ENVIRONMENT_OF_WIDTH)
+        raise ConfigurationError(f"{str(path)!r} has observations of {width} numbers; environments have {known}")
+    if env != folder:
+        library.notes.append(f"which environment {path.name} is of is not known; its observations look like {env}'s")
+    for index, seen in enumerate(episodes):
+        name = f"{env}/{index}" if several else str(index)
+        library.entries.append(Entry(name, _loader(name, env, seen)))
+
+
+def _loader(name: str, env: str, seen: Array) -> "Callable[[], Recording]":
+    def load() -> "Recording":
+        from airhockey.viewing.episodes import Outcome, episode_recording
+        from airhockey.viewing.games import game_recording
+
+        if env == "tournament":
+            return game_recording(name, in_world(seen), None)
+        return episode_recording(name, env, "recorded agent", {"observations": seen}, Outcome())
+
+    return load
+
+
+def in_world(seen: Array) -> Array:
+    """Both players' observations as base observations, as films hold them. Shapes (T, 46)."""
+    from airhockey.envs.specs import IIWA
+
+    base, n = np.array(IIWA.base_positions[0]), IIWA.n_joints
+    rows = seen.reshape(len(seen), 2, -1).copy()
+    rows[:, 1, 0:6] = rows[:, 0, 0:6]
+    for k, side in enumerate((1.0, -1.0)):
+        tip = slice(6 + 2 * n, 9 + 2 * n)
+        rows[:, k, tip] = (rows[:, k, tip] + base) * [side, side, 1.0]
+    rows[:, :, :3] += [base[0], base[1], 0.0]
+    return rows.reshape(len(seen), -1)

@@ -1,0 +1,105 @@
+"""The viewer in a real browser, served by the command on this machine alone."""
+
+import io
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+QUIET = (
+    "--no-sandbox",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+)
+PATIENCE = 60.0  # [s]: a processor draws what a graphics card is meant for
+SCENE = slice(150, 280)  # rows of the picture without the panel
+
+
+@dataclass
+class Served:
+    """The command at work."""
+
+    process: "subprocess.Popen[str]"
+    address: str
+    port: int
+
+
+@pytest.fixture(scope="module")
+def served(match_folder: Path) -> Iterator[Served]:
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    line = ["replay", str(match_folder), "--port", str(port), "--no-browser"]
+    command = [sys.executable, "-m", "airhockey.cli", *line]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+        assert process.stdout is not None
+        said = process.stdout.readline()
+        assert f"http://127.0.0.1:{port}/" in said, said + process.stdout.read()
+        yield Served(process, f"http://127.0.0.1:{port}/", port)
+        process.send_signal(signal.SIGINT)
+        rest = process.stdout.read()
+        assert process.wait(30) == 0, rest
+        assert "Traceback" not in rest, rest
+
+
+def test_it_listens_on_this_machine_alone(served: Served) -> None:
+    rows = [line.split() for name in ("tcp", "tcp6") for line in Path(f"/proc/net/{name}").read_text().splitlines()[1:]]
+    listening = [row[1] for row in rows if row[3] == "0A" and row[1].endswith(f":{served.port:04X}")]
+    assert listening == [f"0100007F:{served.port:04X}"]
+    with pytest.raises(ConnectionRefusedError):
+        socket.create_connection(("127.0.0.2", served.port), timeout=5)
+
+
+@pytest.mark.skipif(CHROMIUM is None and "CI" not in os.environ, reason="no Chromium here: apt-get install chromium")
+def test_the_page_shows_the_game(served: Served) -> None:
+    from playwright.sync_api import sync_playwright
+
+    assert CHROMIUM is not None, "CI has to have Chromium: apt-get install chromium"
+    errors: list[str] = []
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(QUIET))
+        page = browser.new_page(viewport={"width": 520, "height": 320})
+        page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.goto(served.address)
+        first = wait_for_scene(page)
+        moved = wait_for_scene(page, unlike=first)
+        browser.close()
+    assert errors == []
+    assert np.abs(first - moved).max() > 60
+
+
+def wait_for_scene(page: Any, unlike: Any = None) -> Any:
+    """A picture of the page on which the bright table and the red puck are seen, unlike another one."""
+    until = time.monotonic() + PATIENCE
+    while time.monotonic() < until:
+        pixels = np.asarray(Image.open(io.BytesIO(page.screenshot())).convert("RGB")).astype(int)[SCENE]
+        red = (pixels[..., 0] > 150) & (pixels[..., 1] < 90) & (pixels[..., 2] < 90)
+        bright = pixels.min(axis=-1) > 190
+        if red.any() and bright.mean() > 0.1 and (unlike is None or np.abs(pixels - unlike).max() > 60):
+            return pixels
+        time.sleep(0.2)
+    raise AssertionError("the page shows no game, or one that stands still")
+
+
+def test_a_port_that_is_taken_is_one_line(served: Served, match_folder: Path) -> None:
+    line = ["replay", str(match_folder), "--port", str(served.port), "--no-browser"]
+    done = subprocess.run([sys.executable, "-m", "airhockey.cli", *line], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 2
+    assert str(served.port) in done.stderr and len(done.stderr.splitlines()) == 1

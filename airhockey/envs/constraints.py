@@ -16,7 +16,7 @@ from airhockey.envs.kernel.constraints import (
     joint_constraints,
     link_constraints,
 )
-from airhockey.envs.kernel.kinematics import forward_kinematics, point_jacobian
+from airhockey.envs.kernel.chain import forward_kinematics, point_jacobian
 
 Array = NDArray[np.float64]
 

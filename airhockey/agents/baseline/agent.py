@@ -16,12 +16,11 @@ from airhockey.agents.baseline.tactics import choose
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.workspace import Workspace
-from airhockey.agents.estimation.kalman import Noise, PuckEstimate, PuckFilter
+from airhockey.agents.estimation.kalman import Noise, PuckEstimate
 from airhockey.agents.estimation.prediction import PuckPredictor
-from airhockey.agents.table import CONTACT, opponent_in_table, to_table
+from airhockey.agents.estimation.watch import TableWatch
+from airhockey.agents.table import to_table
 
-_NEAR = 0.012
-"""Gap between puck and mallet, in [m], at which they may be touching within a step."""
 WARM_UP_STEPS = 60
 """Per skill and puck."""
 NOISE = Noise(drift_velocity=0.001, drift_share=0.002)
@@ -44,7 +43,7 @@ class BaselineAgent(AgentBase):
         super().__init__(env_info, agent_id, **kwargs)
         self._dt = float(env_info["dt"])
         self._controller = JointController(ArmKinematics(spec_of(env_info)), Workspace.of(env_info), self._dt)
-        self._filter = PuckFilter(self._dt, NOISE)
+        self._watch = TableWatch(env_info, NOISE)
         self._predictor = PuckPredictor()
         self._task = str(env_info["env_name"]).rpartition("-")[2]
         self._smash = Smash(env_info)
@@ -60,7 +59,7 @@ class BaselineAgent(AgentBase):
 
     def reset(self) -> None:
         """See `AgentBase.reset`."""
-        self._filter.reset()
+        self._watch.reset()
         self._smash.forget()
         self._skill: Skill | None = None
         self._step = 0
@@ -105,11 +104,5 @@ class BaselineAgent(AgentBase):
         return skill
 
     def _look(self, observation: Array) -> Situation:
-        tip = to_table(self._controller.tip_position())
-        position, velocity = self.get_puck_state(observation)
-        opponent = opponent_in_table(observation, self.env_info)
-        puck = np.array([*to_table(position), position[2]])
-        mallets = [tip] if opponent is None else [tip, opponent]
-        touching = any(np.hypot(*(puck[:2] - mallet)) < CONTACT + _NEAR for mallet in mallets)
-        estimate = self._filter.update(puck, velocity, touching)
-        return Situation(estimate, self._predictor, self._controller, opponent, self._step, self._dt)
+        puck, opponent = self._watch.see(observation, to_table(self._controller.tip_position()))
+        return Situation(puck, self._predictor, self._controller, opponent, self._step, self._dt)

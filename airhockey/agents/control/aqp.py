@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
-from airhockey.agents.control.factoring import factor
+from airhockey.agents.small_matrices import factor
 from airhockey.agents.control.qp import QuadraticProgram
 
 Array = NDArray[np.float64]

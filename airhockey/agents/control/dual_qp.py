@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
-from airhockey.agents.control.factoring import factor, solve_backward, solve_forward
+from airhockey.agents.small_matrices import factor, solve_backward, solve_forward
 
 Array = NDArray[np.float64]
 

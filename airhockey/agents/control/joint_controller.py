@@ -19,6 +19,7 @@ from airhockey.agents.control.tip_step import (
     advance,
     demand,
     end_state,
+    follow,
     relaxed_demand,
     step_model,
     stopping,
@@ -34,32 +35,40 @@ class JointState:
     """A joint command, and where it puts the rod tip.
 
     Attributes:
-        position: In [rad]. Shape (n,).
-        velocity: In [rad]/[s]. Shape (n,).
-        tip: Rod tip in the robot frame, in [m]. Shape (2,).
-        tip_velocity: In [m]/[s]. Shape (2,).
+        values: All of it, as `tip_step` takes and gives it. Shape (2 n + 4,).
     """
 
-    position: Array
-    velocity: Array
-    tip: Array
-    tip_velocity: Array
+    values: Array
 
     @classmethod
     def of(cls, kinematics: ArmKinematics, position: Array, velocity: Array) -> "JointState":
         """The state with these joint positions and velocities. Shapes (n,), (n,)."""
         tip, jacobian = kinematics.position_and_jacobian(position)
-        return cls(position, velocity, tip[:2], jacobian[:2] @ velocity)
+        return cls(np.concatenate([position, velocity, tip[:2], jacobian[:2] @ velocity]))
 
-    @classmethod
-    def unpacked(cls, flat: Array) -> "JointState":
-        """The state that `tip_step.end_state` gave. Shape (2 n + 4,)."""
-        n = len(flat) // 2 - 2
-        return cls(flat[:n], flat[n : 2 * n], flat[2 * n : 2 * n + 2], flat[2 * n + 2 :])
+    @property
+    def position(self) -> Array:
+        """Of the joints, in [rad]. Shape (n,)."""
+        return self.values[: len(self.values) // 2 - 2]
+
+    @property
+    def velocity(self) -> Array:
+        """Of the joints, in [rad]/[s]. Shape (n,)."""
+        return self.values[len(self.values) // 2 - 2 : -4]
+
+    @property
+    def tip(self) -> Array:
+        """Rod tip in the robot frame, in [m]. Shape (2,)."""
+        return self.values[-4:-2]
+
+    @property
+    def tip_velocity(self) -> Array:
+        """In [m]/[s]. Shape (2,)."""
+        return self.values[-2:]
 
     def as_action(self) -> Array:
         """The command for interpolation order 3, a fresh array. Shape (2, n)."""
-        return np.array([self.position, self.velocity])
+        return self.values[:-4].reshape((2, -1)).copy()
 
 
 class JointController:
@@ -95,7 +104,7 @@ class JointController:
         self.parameters = p = parameters or control_parameters(spec)
         self._model = step_model(spec, p, workspace, dt)
         # The package's own solver is part of the compiled step.
-        self._qp = AnchoredQp(self._model.weights, make_solver(p.solver)) if p.solver != DEFAULT else None
+        self._qp = AnchoredQp(np.array(p.anchor_weights), make_solver(p.solver)) if p.solver != DEFAULT else None
         self._posture = np.array(p.anchor)
         self.height = spec.desired_height
         self.exact = True
@@ -136,7 +145,7 @@ class JointController:
 
     def brake(self) -> Array:
         """Bring the rod tip to rest as fast as the limits allow. Returns the joint command. Shape (2, n)."""
-        self.state, self.exact = self._advance(self.state, np.zeros(2), None)
+        self.state, self.exact = self._advance(self.state, np.zeros(2), self._posture)
         return self.state.as_action()
 
     def hold(self) -> Array:
@@ -148,25 +157,28 @@ class JointController:
         self, state: JointState, target: Array, velocity: Array | None = None, anchor: Array | None = None
     ) -> tuple[JointState, bool]:
         """What `step` would command from a state, and whether it meets the target exactly. Changes nothing."""
-        wanted = tip_velocity_to(state.tip, state.tip_velocity, target, velocity, self._model)
-        return self._advance(state, wanted, anchor)
+        anchor = self._posture if anchor is None else anchor
+        if self._qp is None:  # the same in one call
+            values, exact = follow(state.values, target, velocity, anchor, self._model)
+            return JointState(values), exact
+        return self._advance(state, tip_velocity_to(state.values[-4:], target, velocity, self._model[0]), anchor)
 
-    def _advance(self, state: JointState, tip_velocity: Array, anchor: Array | None) -> tuple[JointState, bool]:
+    def _advance(self, state: JointState, tip_velocity: Array, anchor: Array) -> tuple[JointState, bool]:
         """One step whose end has a given tip velocity (2,), as nearly as the limits allow."""
-        posture = self._posture if anchor is None else anchor
         if self._qp is None:
-            after, exact = advance(state.position, state.velocity, tip_velocity, posture, self._model)
-            return JointState.unpacked(after), exact
-        asked = demand(state.position, state.velocity, tip_velocity, posture, self._model)
+            values, exact = advance(state.values, tip_velocity, anchor, self._model)
+            return JointState(values), exact
+        model = self._model[0]
+        asked = demand(state.position, state.velocity, tip_velocity, anchor, model)
         new_velocity = self._qp.solve(asked.jacobian, asked.velocity, asked.anchor, asked.limits)
         exact = new_velocity is not None
         if new_velocity is None:
             new_velocity = self._nearest(self._qp, asked)
-        return JointState.unpacked(end_state(state.position, state.velocity, new_velocity, self._model)), exact
+        return JointState(end_state(state.position, state.velocity, new_velocity, model)), exact
 
     def _nearest(self, qp: AnchoredQp, asked: Demand) -> Array:
         """`joint_velocity_for` by another solver, where what is asked cannot be done. Shape (n,)."""
-        soft, tracking = relaxed_demand(asked, self._model)
+        soft, tracking = relaxed_demand(asked, self._model[0])
         for limits in (soft.limits, asked.limits):
             velocity = qp.solve_relaxed(soft.jacobian, soft.velocity, soft.anchor, limits, tracking)
             if velocity is not None:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
-from airhockey.envs.kernel.chain import forward_kinematics, point_jacobian
+from airhockey.envs.kernel.chain import SerialChain, forward_kinematics, point_jacobian
 from airhockey.envs.specs import IIWA, PLANAR, RobotSpec
 
 Array = NDArray[np.float64]
@@ -98,7 +98,7 @@ class ArmKinematics:
 
 
 @compiled
-def locate(chain: Chain, q: Array) -> tuple[Array, Array]:
+def locate(chain: SerialChain, q: Array) -> tuple[Array, Array]:
     """Positions of the links and the tip, and axes, as of `forward_kinematics`. Shapes (n + 1, 3), (n + 2, 3)."""
     n = len(q)
     positions, axes = np.empty((n + 1, 3)), np.empty((n + 2, 3))

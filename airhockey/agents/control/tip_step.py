@@ -3,7 +3,7 @@
 Compiled as a whole, because an agent does it in every control step and plans by doing it many times.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +12,11 @@ from airhockey.agents.compiling import compiled
 from airhockey.agents.control.aqp import VelocityLimits, exact_problem, is_singular, relaxed_problem
 from airhockey.agents.control.braking import box_speeds, joint_speeds
 from airhockey.agents.control.dual_qp import minimise
-from airhockey.agents.control.kinematics import Chain, chain_of, heights_and_jacobian, jacobian_of, locate
+from airhockey.agents.control.kinematics import chain_of, heights_and_jacobian, jacobian_of, locate
 from airhockey.agents.control.parameters import ControlParameters
 from airhockey.agents.control.speed_limit import largest_speed
 from airhockey.agents.control.workspace import Workspace
+from airhockey.envs.kernel.memory import pack
 from airhockey.envs.specs import RobotSpec
 
 Array = NDArray[np.float64]
@@ -25,7 +26,7 @@ class StepModel(NamedTuple):
     """What a step is computed from; see `ControlParameters` for what is not said here.
 
     Attributes:
-        chain: The robot's links.
+        offset, rotation, tip: The robot's links; see `airhockey.envs.kernel.chain.SerialChain`.
         position_limit, velocity_limit: Lower and upper to keep, in [rad] and [rad]/[s]. Shapes (2, n).
         acceleration: Largest change of joint velocity per second, in [rad]/[s²]. Shape (n,).
         weights: Diagonal of W. Shape (n,).
@@ -36,7 +37,9 @@ class StepModel(NamedTuple):
         dt: Length of a control step, in [s].
     """
 
-    chain: Chain
+    offset: Array
+    rotation: Array
+    tip: Array
     position_limit: Array
     velocity_limit: Array
     acceleration: Array
@@ -56,10 +59,13 @@ class StepModel(NamedTuple):
     link_height_gain: float
 
 
-def step_model(spec: RobotSpec, p: ControlParameters, workspace: Workspace, dt: float) -> StepModel:
-    """The model of a robot with these parameters, in this workspace; dt in [s]."""
-    return StepModel(
-        chain=chain_of(spec),
+def step_model(spec: RobotSpec, p: ControlParameters, workspace: Workspace, dt: float) -> NDArray[Any]:
+    """The model of a robot with these parameters, in this workspace; dt in [s].
+
+    It is packed into a record of shape (1,), as which it costs little to hand over; `model[0]` has the fields of `StepModel`.
+    """
+    model = StepModel(
+        **chain_of(spec)._asdict(),
         position_limit=p.position_share * spec.joint_position_limit,
         velocity_limit=p.velocity_share * spec.joint_velocity_limit,
         acceleration=p.acceleration_share * spec.joint_acceleration_limit[1],
@@ -78,6 +84,7 @@ def step_model(spec: RobotSpec, p: ControlParameters, workspace: Workspace, dt: 
         link_height=p.link_height,
         link_height_gain=p.link_height_gain,
     )
+    return pack(model)
 
 
 class Demand(NamedTuple):
@@ -99,27 +106,25 @@ class Demand(NamedTuple):
 
 
 @compiled
-def tip_velocity_to(
-    tip: Array, tip_velocity: Array, target: Array, velocity: Array | None, model: StepModel
-) -> Array:
+def tip_velocity_to(now: Array, target: Array, velocity: Array | None, model: StepModel) -> Array:
     """The velocity with which the rod tip ends a step, so that it comes to a target. Shape (2,).
 
     Without a velocity: the way to the target over Δt (thesis). Ending the step with the target's velocity leaves an error, of
     which a share is removed (all of it in two steps at a gain of 1).
 
     Args:
-        tip, tip_velocity: Now, in [m] and [m]/[s]. Shapes (2,).
+        now: Position and velocity of the rod tip, in [m] and [m]/[s]. Shape (4,).
         target: In [m]; moved into the workspace first. Shape (2,).
         velocity: There, in [m]/[s]. Shape (2,).
         model: Of the step.
     """
     wanted = np.empty(2)
     for i in range(2):
-        way = min(max(target[i], model.lower[i]), model.upper[i]) - tip[i]
+        way = min(max(target[i], model.lower[i]), model.upper[i]) - now[i]
         if velocity is None:
             wanted[i] = way / model.dt
         else:
-            error = way - 0.5 * model.dt * (tip_velocity[i] + velocity[i])
+            error = way - 0.5 * model.dt * (now[2 + i] + velocity[i])
             wanted[i] = velocity[i] + model.position_gain * error / model.dt
     return wanted
 
@@ -135,7 +140,7 @@ def demand(q: Array, joint_velocity: Array, tip_velocity: Array, anchor: Array, 
         model: Of the step.
     """
     n, m, dt = len(q), model.coordinates, model.dt
-    positions, axes = locate(model.chain, q + dt * joint_velocity)  # the end of the step if the velocity lasts
+    positions, axes = locate(model, q + dt * joint_velocity)  # the end of the step if the velocity lasts
     tip, whole = positions[n], jacobian_of(positions, axes, n)
     present = _times(whole, joint_velocity)
     edges = box_speeds(tip[:2] - 0.5 * dt * present[:2], model.lower, model.upper, model.tip_acceleration, dt)
@@ -211,7 +216,7 @@ def end_state(q: Array, joint_velocity: Array, new_velocity: Array, model: StepM
     for i in range(n):
         state[i] = q[i] + 0.5 * model.dt * (joint_velocity[i] + new_velocity[i])
         state[n + i] = new_velocity[i]
-    positions, axes = locate(model.chain, state[:n])
+    positions, axes = locate(model, state[:n])
     moving = _times(jacobian_of(positions, axes, n), new_velocity)
     state[2 * n], state[2 * n + 1] = positions[n, 0], positions[n, 1]
     state[2 * n + 2], state[2 * n + 3] = moving[0], moving[1]
@@ -219,10 +224,30 @@ def end_state(q: Array, joint_velocity: Array, new_velocity: Array, model: StepM
 
 
 @compiled
-def advance(
-    q: Array, joint_velocity: Array, tip_velocity: Array, anchor: Array, model: StepModel
+def follow(
+    state: Array, target: Array, velocity: Array | None, anchor: Array, packed: NDArray[Any]
 ) -> tuple[Array, bool]:
-    """One step whose end has a given tip velocity, as nearly as the limits allow: `end_state`, and whether exactly."""
+    """One step towards a target, as nearly as the limits allow.
+
+    Args:
+        state: Joint position, joint velocity, tip position, tip velocity. Shape (2 n + 4,).
+        target, velocity: As for `tip_velocity_to`.
+        anchor: Joint position that the null space is drawn to, in [rad]. Shape (n,).
+        packed: From `step_model`.
+
+    Returns:
+        The state after it, and whether it is what was asked, exactly.
+    """
+    wanted = tip_velocity_to(state[-4:], target, velocity, packed[0])
+    return advance(state, wanted, anchor, packed)
+
+
+@compiled
+def advance(state: Array, tip_velocity: Array, anchor: Array, packed: NDArray[Any]) -> tuple[Array, bool]:
+    """The same for a velocity that the rod tip shall have at the end, in [m]/[s]. Shape (2,)."""
+    model = packed[0]
+    n = len(anchor)
+    q, joint_velocity = state[:n], state[n : 2 * n]
     new_velocity, exact = joint_velocity_for(demand(q, joint_velocity, tip_velocity, anchor, model), model)
     return end_state(q, joint_velocity, new_velocity, model), exact
 

@@ -30,6 +30,8 @@ class TableWatch:
         self._filter = PuckFilter(float(env_info["dt"]), noise)
         self._puck = np.array([*env_info["puck_pos_ids"][:2], *env_info["puck_vel_ids"]], dtype=np.int64)
         self._opponent = np.array(env_info["opponent_ee_ids"], dtype=np.int64)
+        self.see(np.zeros(int(self._puck.max()) + 1), np.zeros(2))  # compile before the game
+        self.reset()
 
     def reset(self) -> None:
         """A new serve: forget the puck."""

@@ -83,10 +83,11 @@ class BaselineAgent(AgentBase):
                 for step in range(WARM_UP_STEPS):
                     puck = np.concatenate([np.array([-0.5, 0.1]) - step * self._dt * velocity, velocity, np.zeros(1)])
                     estimate = PuckEstimate(puck, 1e-6 * np.eye(5), 0)
-                    now = Situation(estimate, self._predictor, self._controller, opponent, step, self._dt)
                     if step == 0:
                         self._controller.reset(np.array(self._controller.kinematics.spec.start))
                         self._smash.forget()
+                    now = Situation(estimate, self._predictor, self._controller, opponent, step, self._dt)
+                    if step == 0:
                         skill.begin(now)
                     self._smash.scout(now)
                     skill.act(now)

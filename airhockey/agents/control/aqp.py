@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
-from airhockey.agents.small_matrices import factor
 from airhockey.agents.control.qp import QuadraticProgram
+from airhockey.agents.small_matrices import factor
 
 Array = NDArray[np.float64]
 

@@ -147,9 +147,9 @@ def _take_up(
         _shares(held, count, along)
         limit, blocking = np.inf, -1  # how far until a row's multiplier is used up
         for j in range(count):
-            if along[j] > 0.0 and high[held.row[j]] - low[held.row[j]] > SAME:
-                if held.multiplier[j] < limit * along[j]:
-                    limit, blocking = held.multiplier[j] / along[j], j
+            droppable = high[held.row[j]] - low[held.row[j]] > SAME
+            if droppable and along[j] > 0.0 and held.multiplier[j] < limit * along[j]:
+                limit, blocking = held.multiplier[j] / along[j], j
         full = violation / (length * length) if length > DEPENDENT else np.inf
         step = min(limit, full)
         if step == np.inf:

@@ -6,7 +6,7 @@ five.
 
 from dataclasses import dataclass
 from math import hypot, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import PuckMotion, puck_motion, transition
 from airhockey.agents.small_matrices import add_congruence, factor, solve_backward, solve_forward
+from airhockey.envs.kernel.memory import pack
 
 Array = NDArray[np.float64]
 
@@ -111,7 +112,7 @@ class PuckFilter:
             motion: Constants of the puck's motion.
         """
         n, m = noise or Noise(), motion or puck_motion()
-        self._model = FilterModel(
+        model = FilterModel(
             dt=dt,
             constants=m.constants,
             observation=np.diag([n.position, n.position, n.velocity, n.velocity, n.yaw_rate]) ** 2,
@@ -122,6 +123,7 @@ class PuckFilter:
             e_spread=m.restitution_spread,
             k_spread=m.slip_spread,
         )
+        self._model, self._covariance = pack(model), model.observation
         self.reset()
         for k in range(3):  # compile before the game
             self.update(np.array([0.02 * k, 0.0, 0.0]), np.array([1.0, 0.0, 0.0]))
@@ -149,7 +151,7 @@ class PuckFilter:
         """The same for an observation laid out like the state. Shape (5,)."""
         before = self.estimate
         if self._last is None:
-            self.estimate = PuckEstimate(seen, self._model.observation.copy(), 0)
+            self.estimate = PuckEstimate(seen, self._covariance.copy(), 0)
         else:
             self.estimate = PuckEstimate(
                 *follow(before.state, before.covariance, before.lost, self._last, seen, contact, self._model)
@@ -160,7 +162,7 @@ class PuckFilter:
 
 @compiled
 def follow(
-    state: Array, covariance: Array, lost: int, last: Array, seen: Array, contact: bool, model: FilterModel
+    state: Array, covariance: Array, lost: int, last: Array, seen: Array, contact: bool, packed: NDArray[Any]
 ) -> tuple[Array, Array, int]:
     """One step of the filter: predict, and correct by the observation unless the track is lost.
 
@@ -168,12 +170,13 @@ def follow(
         state, covariance, lost: The estimate before. Shapes (5,), (5, 5).
         last, seen: The observation before, and this one. Shapes (5,).
         contact: A mallet may be touching the puck.
-        model: Of the filter.
+        packed: A record of a `FilterModel`.
 
     Returns:
         The estimate now.
     """
-    drift = (model.contact if contact else model.drift).copy()
+    model = packed[0]
+    drift = model.contact.copy() if contact else model.drift.copy()
     if not contact:
         slipping = (model.drift_share * sqrt(state[2] * state[2] + state[3] * state[3])) ** 2
         drift[2, 2] += slipping

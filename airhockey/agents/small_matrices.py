@@ -5,12 +5,12 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.compiling import compiled
+from airhockey.agents.compiling import in_place
 
 Array = NDArray[np.float64]
 
 
-@compiled
+@in_place
 def factor(matrix: Array) -> bool:
     """Replace the lower triangle of a symmetric matrix by L with L Lᵀ = matrix.
 
@@ -34,7 +34,7 @@ def factor(matrix: Array) -> bool:
     return True
 
 
-@compiled
+@in_place
 def solve_forward(lower: Array, right: Array) -> None:
     """Replace a right side by L⁻¹ times it. Shapes (n, n), (n,)."""
     for i in range(len(right)):
@@ -44,7 +44,7 @@ def solve_forward(lower: Array, right: Array) -> None:
         right[i] = rest / lower[i, i]
 
 
-@compiled
+@in_place
 def solve_backward(lower: Array, right: Array) -> None:
     """Replace a right side by L⁻ᵀ times it. Shapes (n, n), (n,)."""
     n = len(right)
@@ -56,7 +56,7 @@ def solve_backward(lower: Array, right: Array) -> None:
         right[i] = rest / lower[i, i]
 
 
-@compiled
+@in_place
 def add_congruence(result: Array, matrix: Array, middle: Array) -> None:
     """Add A M Aᵀ to a result, in place. Shapes (n, n), A (n, m), M (m, m)."""
     n, m = matrix.shape

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.compiling import compiled
+from airhockey.agents.compiling import compiled, in_place
 from airhockey.agents.small_matrices import factor, solve_backward, solve_forward
 
 Array = NDArray[np.float64]
@@ -117,7 +117,7 @@ def _shortest_vector_problem(
     return scaled, low, high
 
 
-@compiled
+@in_place
 def _most_violated(scaled: Array, low: Array, high: Array, u: Array) -> tuple[int, float]:
     """Number of the row that u violates most, or −1; and 1 if it is below its lower bound, −1 if above its upper one."""
     worst, which, sign = TOLERANCE, -1, 1.0
@@ -132,7 +132,7 @@ def _most_violated(scaled: Array, low: Array, high: Array, u: Array) -> tuple[in
     return which, sign
 
 
-@compiled
+@in_place
 def _take_up(
     row: int, sign: float, scaled: Array, low: Array, high: Array, u: Array, held: Held, count: int, along: Array
 ) -> int:
@@ -172,7 +172,7 @@ def _take_up(
     return -1
 
 
-@compiled
+@in_place
 def _append(held: Held, count: int, row: Array, sign: float) -> float:
     """Split sign · row into what the rows held span (column `count` of R) and the rest (row `count` of Qᵀ): its length."""
     n, rest = len(row), held.basis[count]
@@ -194,7 +194,7 @@ def _append(held: Held, count: int, row: Array, sign: float) -> float:
     return float(np.sqrt(length))
 
 
-@compiled
+@in_place
 def _shares(held: Held, count: int, along: Array) -> None:
     """Write R⁻¹ times column `count` of R: how the last row is made of those held."""
     for j in range(count):
@@ -205,7 +205,7 @@ def _shares(held: Held, count: int, along: Array) -> None:
         along[i] = rest / held.corner[i, i]
 
 
-@compiled
+@in_place
 def _settle(held: Held, count: int, u: Array, work: Array) -> None:
     """Write the shortest u that has every row held at its bound."""
     for k in range(len(u)):
@@ -219,7 +219,7 @@ def _settle(held: Held, count: int, u: Array, work: Array) -> None:
             u[k] += work[i] * held.basis[i, k]
 
 
-@compiled
+@in_place
 def _drop(held: Held, count: int, place: int, scaled: Array) -> int:
     """Forget the row held at a place. Returns the number of rows still held."""
     for j in range(place, count - 1):

@@ -19,7 +19,6 @@ from airhockey.agents.control.tip_step import (
     advance,
     demand,
     end_state,
-    follow,
     relaxed_demand,
     step_model,
     stopping,
@@ -158,10 +157,7 @@ class JointController:
     ) -> tuple[JointState, bool]:
         """What `step` would command from a state, and whether it meets the target exactly. Changes nothing."""
         anchor = self._posture if anchor is None else anchor
-        if self._qp is None:  # the same in one call
-            values, exact = follow(state.values, target, velocity, anchor, self._model)
-            return JointState(values), exact
-        return self._advance(state, tip_velocity_to(state.values[-4:], target, velocity, self._model[0]), anchor)
+        return self._advance(state, tip_velocity_to(state.values[-4:], target, velocity, self._model), anchor)
 
     def _advance(self, state: JointState, tip_velocity: Array, anchor: Array) -> tuple[JointState, bool]:
         """One step whose end has a given tip velocity (2,), as nearly as the limits allow."""

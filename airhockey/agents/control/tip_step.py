@@ -106,7 +106,7 @@ class Demand(NamedTuple):
 
 
 @compiled
-def tip_velocity_to(now: Array, target: Array, velocity: Array | None, model: StepModel) -> Array:
+def tip_velocity_to(now: Array, target: Array, velocity: Array | None, packed: NDArray[Any]) -> Array:
     """The velocity with which the rod tip ends a step, so that it comes to a target. Shape (2,).
 
     Without a velocity: the way to the target over Δt (thesis). Ending the step with the target's velocity leaves an error, of
@@ -116,8 +116,9 @@ def tip_velocity_to(now: Array, target: Array, velocity: Array | None, model: St
         now: Position and velocity of the rod tip, in [m] and [m]/[s]. Shape (4,).
         target: In [m]; moved into the workspace first. Shape (2,).
         velocity: There, in [m]/[s]. Shape (2,).
-        model: Of the step.
+        packed: From `step_model`.
     """
+    model = packed[0]
     wanted = np.empty(2)
     for i in range(2):
         way = min(max(target[i], model.lower[i]), model.upper[i]) - now[i]
@@ -224,27 +225,18 @@ def end_state(q: Array, joint_velocity: Array, new_velocity: Array, model: StepM
 
 
 @compiled
-def follow(
-    state: Array, target: Array, velocity: Array | None, anchor: Array, packed: NDArray[Any]
-) -> tuple[Array, bool]:
-    """One step towards a target, as nearly as the limits allow.
+def advance(state: Array, tip_velocity: Array, anchor: Array, packed: NDArray[Any]) -> tuple[Array, bool]:
+    """One step whose end has a given tip velocity, as nearly as the limits allow.
 
     Args:
         state: Joint position, joint velocity, tip position, tip velocity. Shape (2 n + 4,).
-        target, velocity: As for `tip_velocity_to`.
+        tip_velocity: In [m]/[s]. Shape (2,).
         anchor: Joint position that the null space is drawn to, in [rad]. Shape (n,).
         packed: From `step_model`.
 
     Returns:
         The state after it, and whether it is what was asked, exactly.
     """
-    wanted = tip_velocity_to(state[-4:], target, velocity, packed[0])
-    return advance(state, wanted, anchor, packed)
-
-
-@compiled
-def advance(state: Array, tip_velocity: Array, anchor: Array, packed: NDArray[Any]) -> tuple[Array, bool]:
-    """The same for a velocity that the rod tip shall have at the end, in [m]/[s]. Shape (2,)."""
     model = packed[0]
     n = len(anchor)
     q, joint_velocity = state[:n], state[n : 2 * n]

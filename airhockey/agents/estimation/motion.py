@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.compiling import compiled
+from airhockey.agents.compiling import compiled, in_place
 from airhockey.agents.parameters import load_parameters
 from airhockey.envs.specs import PUCK, TABLE
 
@@ -67,14 +67,14 @@ def puck_motion() -> PuckMotion:
     return load_parameters(PuckMotion, "bounces", Path(__file__).parent)
 
 
-@compiled
+@in_place
 def decay_over(duration: float, constants: Array) -> tuple[float, float, float]:
     """What a duration without bounces leaves of the velocity, how far a unit of velocity goes in it [s], and what of the spin."""
     keep = exp(-constants[_DECAY] * duration)
     return keep, (1.0 - keep) / constants[_DECAY], exp(-constants[_SPIN_DECAY] * duration)
 
 
-@compiled
+@in_place
 def slide_by(state: Array, decay: tuple[float, float, float]) -> None:
     """Move a state along without bounces, in place, over a duration of which `decay_over` is known."""
     keep, travel, keep_spin = decay
@@ -85,13 +85,13 @@ def slide_by(state: Array, decay: tuple[float, float, float]) -> None:
     state[4] *= keep_spin
 
 
-@compiled
+@in_place
 def slide(state: Array, duration: float, constants: Array) -> None:
     """Move a state along by a duration without bounces, in place."""
     slide_by(state, decay_over(duration, constants))
 
 
-@compiled
+@in_place
 def bounce(state: Array, constants: Array) -> bool:
     """Reflect a state that has passed a rim, in place, except in a goal's mouth. Returns whether it bounced."""
     bounced = False
@@ -113,20 +113,20 @@ def bounce(state: Array, constants: Array) -> bool:
     return bounced
 
 
-@compiled
+@in_place
 def advance(state: Array, duration: float, constants: Array) -> int:
     """Move a state along by a duration with bounces, in place, in pieces of at most 5 ms. Returns their number."""
     pieces = pieces_of(duration)
     return advance_by(state, pieces, decay_over(duration / pieces, constants), constants)
 
 
-@compiled
+@in_place
 def pieces_of(duration: float) -> int:
     """Into how many pieces of at most 5 ms a duration is divided."""
     return max(1, int(np.ceil(duration / 0.005 - 1e-9)))
 
 
-@compiled
+@in_place
 def advance_by(state: Array, pieces: int, decay: tuple[float, float, float], constants: Array) -> int:
     """Move a state along by pieces with bounces, in place, where `decay_over` a piece is known. Returns their number."""
     bounces = 0

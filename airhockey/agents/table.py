@@ -4,9 +4,6 @@ For player 1 this is the challenge's world frame; for player 2 it is that frame 
 from it by a shift along x (and in height, which players do not look at).
 """
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,7 +19,9 @@ OWN_GOAL = np.array([-HALF_LENGTH, 0.0])
 HOME = np.array([-0.86, 0.0])
 """Where the mallet is at the start (challenge's section 1, thesis 4.2.4)."""
 
-_BASE = np.array([PLANAR.base_positions[0][0], 0.0])  # both robots stand at the same place
+BASE_X = float(PLANAR.base_positions[0][0])
+"""Where both robots stand, in [m]."""
+_BASE = np.array([BASE_X, 0.0])
 
 
 def to_table(position_in_robot: Array) -> Array:
@@ -33,9 +32,3 @@ def to_table(position_in_robot: Array) -> Array:
 def to_robot(position_in_table: Array) -> Array:
     """A position of the table frame in the robot frame. Shape (2,)."""
     return np.asarray(position_in_table[:2] - _BASE)
-
-
-def opponent_in_table(observation: Array, env_info: Mapping[str, Any]) -> Array | None:
-    """Where the opponent's mallet is, or None where there is no opponent. Shape (2,)."""
-    ids = env_info["opponent_ee_ids"]
-    return to_table(observation[ids]) if len(ids) and max(ids) < len(observation) else None

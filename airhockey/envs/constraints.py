@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from airhockey.envs.kernel.arm import Arm
+from airhockey.envs.kernel.chain import forward_kinematics, point_jacobian
 from airhockey.envs.kernel.constraints import (
     ELBOW,
     WRIST,
@@ -16,7 +17,6 @@ from airhockey.envs.kernel.constraints import (
     joint_constraints,
     link_constraints,
 )
-from airhockey.envs.kernel.kinematics import forward_kinematics, point_jacobian
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.envs.actions import ActionFormat
+from airhockey.envs.actions import FLOAT, ActionFormat
 from airhockey.envs.constraints import constraint_slices
 from airhockey.envs.disturbances import Disturbances, load_disturbances
 from airhockey.envs.editions import ROBOTS, Edition, edition
@@ -101,6 +101,7 @@ class Environment:
         self._no_noise = np.zeros((0, self.n_agents, robot.n_joints))
         self._torque_deviation = self.disturbances.torque * self.simulation.arm.torque_limit
         self._mismatch = PlantMismatch(self.simulation.model, robot, self.n_agents)
+        self._blurred = self.disturbances.blurs_observations
         self._perceptions = [Perception(self.disturbances, robot.n_joints) for _ in range(self.n_players)]
         self._seed_streams(np.random.SeedSequence())
         self.reset()
@@ -108,7 +109,7 @@ class Environment:
     @property
     def base_observation(self) -> Array:
         """The true state in world coordinates, as `reset(state=…)` accepts it: puck, joints, opponent, per robot."""
-        return self.simulation.readings.base.flatten()
+        return self.simulation.flat[self._base].copy()
 
     @property
     def true_observation(self) -> Array:
@@ -118,8 +119,8 @@ class Environment:
     @property
     def constraint_values(self) -> Array:
         """Constraint values of the latest step, violated where positive; shape (K,), in the tournament (2, K)."""
-        values = self.simulation.readings.constraints
-        return values if self.n_players == 2 else values[0]
+        values = self.simulation.flat[self._judged]
+        return values.reshape((2, -1)) if self.n_players == 2 else values
 
     @property
     def score(self) -> list[int]:
@@ -223,12 +224,14 @@ class Environment:
         """Where each reading stands in the simulation's flat array."""
         readings = self.simulation.readings
         base, width = readings.base.size, readings.base.shape[1]
+        self._base = slice(base)
         self._observations = slice(base, base + self.n_players * width)
         count = readings.constraints.shape[1]
         self._constraints = [
             {name: slice(first + part.start, first + part.stop) for name, part in self.constraint_slices.items()}
             for first in (2 * base, 2 * base + count)[: self.n_players]
         ]
+        self._judged = slice(2 * base, 2 * base + self.n_players * count)
         self._jerk = slice(2 * base + readings.constraints.size, self.simulation.flat.size)
 
     def _take(self, action: Any) -> None:
@@ -243,13 +246,13 @@ class Environment:
 
     def _take_one(self, player: int, action: Any) -> None:
         form = self.formats[player]
-        if type(action) is not np.ndarray or action.shape != form.shape or action.dtype != np.float64:
+        if type(action) is not np.ndarray or action.shape != form.shape or action.dtype != FLOAT:
             label = f", player {player + 1}" if self.n_players == 2 else ""
             action = form.check(action, self.step_count, label)
         self._slots[player][...] = action
 
     def _observe(self) -> Array:
-        if not self.disturbances.blurs_observations:
+        if not self._blurred:
             return self.simulation.flat[self._observations].copy()
         true = self.simulation.readings.observation
         return np.concatenate([see.observe(row) for see, row in zip(self._perceptions, true, strict=False)])

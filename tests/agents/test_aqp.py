@@ -1,4 +1,4 @@
-"""AQP against brute force over its null space, each limit absent, active and contradictory, and both solvers."""
+"""AQP against brute force over its null space, each limit absent, active and contradictory, and every solver."""
 
 import numpy as np
 import pytest
@@ -47,7 +47,7 @@ def brute_force(jacobian, velocity, anchor, limits):
 
 
 @pytest.mark.parametrize("seed", range(8))
-@pytest.mark.parametrize("solver", ["daqp", "osqp"])
+@pytest.mark.parametrize("solver", ["daqp", "osqp", "dual"])
 def test_equals_brute_force(seed, solver):
     kinematics, q, rng = posture(seed)
     jacobian = kinematics.jacobian(q)

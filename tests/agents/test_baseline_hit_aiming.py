@@ -24,7 +24,7 @@ TIP = np.array([-0.86, 0.0])
 
 @pytest.fixture(scope="module")
 def rules() -> Rules:
-    workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0, 0.02)
+    workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0)
     assert control_parameters(IIWA).edge_margin == pytest.approx(0.008)
     return make_rules(smash_parameters(IIWA), workspace)._replace(turn=0.0)
 

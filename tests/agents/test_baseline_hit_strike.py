@@ -64,7 +64,7 @@ def test_the_velocity_of_a_strike_is_the_derivative_of_its_position() -> None:
 )
 def test_the_arm_can_follow_a_strike_within_its_limits(spec: RobotSpec, contact: list[float], angle: float) -> None:
     kinematics = ArmKinematics(spec)
-    workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0, DT)
+    workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0)
     controller = JointController(kinematics, workspace, DT)
     strike = strike_of(spec, contact, angle)
     point = np.array([*to_robot(strike.start), spec.desired_height])
@@ -97,7 +97,7 @@ def test_the_approach_gets_there_round_the_puck_without_touching_it() -> None:
 
 def situation(x: float, velocity: tuple[float, float], tip: tuple[float, float] = (-0.86, 0.0)) -> Situation:
     kinematics = ArmKinematics(PLANAR)
-    controller = JointController(kinematics, Workspace(np.array([0.5, -0.5]), np.array([2.5, 0.5]), 3.0, DT))
+    controller = JointController(kinematics, Workspace(np.array([0.5, -0.5]), np.array([2.5, 0.5]), 3.0))
     q = inverse_kinematics(kinematics, np.array([*to_robot(np.array(tip)), 0.1]), np.array(PLANAR.start))
     assert q is not None
     controller.reset(q)

@@ -1,10 +1,13 @@
 """The joint controller keeps every limit whatever it is asked, reaches what can be reached, and brakes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics
+from airhockey.agents.control.parameters import control_parameters
 from airhockey.agents.control.workspace import Workspace
 from airhockey.envs.specs import IIWA, MALLET, PLANAR, TABLE
 
@@ -12,8 +15,9 @@ SPECS = pytest.mark.parametrize("spec", [IIWA, PLANAR], ids=["iiwa", "planar"])
 DT = 0.02
 
 
-def make(spec):
-    return JointController(ArmKinematics(spec), Workspace.of({"robot": {"n_joints": spec.n_joints}, "dt": DT}))
+def make(spec, **changes):
+    workspace = Workspace.of({"robot": {"n_joints": spec.n_joints}})
+    return JointController(ArmKinematics(spec), workspace, DT, replace(control_parameters(spec), **changes))
 
 
 @SPECS
@@ -45,6 +49,23 @@ def test_no_target_however_wild_breaks_a_limit(spec):
         assert abs(tip[2] - spec.desired_height) < 0.01
         assert tip[0] > edge[0] and abs(tip[1]) < -edge[1]
         assert np.all(control.kinematics.link_heights(action[0]) > 0.25)
+
+
+@SPECS
+def test_another_solver_gives_the_same_commands(spec):
+    own, daqp = make(spec), make(spec, solver="daqp")
+    rng = np.random.default_rng(11)
+    exact = 0
+    for k in range(600):
+        if k % 6 == 0:
+            target, speed = rng.uniform(0.4, 1.6, 2) - [0.0, 1.0], rng.uniform(-2.0, 2.0, 2)
+        if k % 60 > 20:  # something that it can do
+            target, speed = own.tip_position() + 0.02 * own.tip_velocity(), 0.9 * own.tip_velocity()
+        daqp.state = own.state
+        np.testing.assert_allclose(own.step(target, speed), daqp.step(target, speed), atol=1e-9)
+        assert own.exact == daqp.exact
+        exact += own.exact
+    assert 50 < exact < 550
 
 
 @SPECS

@@ -2,12 +2,14 @@
 
 import mujoco
 import numpy as np
+import pinocchio as pin
 import pytest
 
 from airhockey import envs
 from airhockey.agents.control.hitting_posture import hitting_posture
 from airhockey.agents.control.inverse_kinematics import inverse_kinematics
 from airhockey.agents.control.kinematics import ArmKinematics
+from airhockey.agents.control.pinocchio_model import pinocchio_model
 from airhockey.envs.specs import IIWA, PLANAR
 
 ROBOTS = [("7dof-prepare", IIWA, "iiwa_1/striker_joint_link"), ("3dof-hit", PLANAR, "planar_robot_1/body_ee")]
@@ -36,6 +38,18 @@ def test_positions_are_mujocos(name, spec, tip):
         if kinematics.has_link_heights:
             heights = [data.body(f"iiwa_1/link_{k}").xpos[2] for k in (4, 7)]
             np.testing.assert_allclose(kinematics.link_heights(q), heights, atol=1e-9)
+
+
+@SPECS
+def test_pinocchios_model_is_the_same_arm(spec):
+    kinematics, (model, tip) = ArmKinematics(spec), pinocchio_model(spec)
+    data = model.createData()
+    for q in random_joints(spec, 4):
+        jacobian = pin.computeFrameJacobian(model, data, q, tip, pin.LOCAL_WORLD_ALIGNED)[:3]
+        placement = pin.updateFramePlacement(model, data, tip)
+        np.testing.assert_allclose(kinematics.position(q), placement.translation, atol=1e-12)
+        np.testing.assert_allclose(kinematics.rotation(q), placement.rotation, atol=1e-12)
+        np.testing.assert_allclose(kinematics.jacobian(q), jacobian, atol=1e-12)
 
 
 @SPECS

@@ -74,7 +74,7 @@ def test_pieces_follow_one_another():
 
 def test_the_smoothing_is_scipys_spline():
     rng = np.random.default_rng(2)
-    start = JointState(rng.normal(size=3), rng.normal(size=3), np.zeros(2), np.zeros(2))
+    start = JointState(np.concatenate([rng.normal(size=6), np.zeros(4)]))
     positions = start.position + np.cumsum(0.02 * rng.normal(size=(9, 3)), axis=0)
     ends = ((1, start.velocity), (2, np.zeros(3)))
     spline = CubicSpline(0.02 * np.arange(10), np.vstack([start.position, positions]), bc_type=ends)

@@ -18,12 +18,11 @@ from airhockey.agents.baseline.tactics import choose
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.workspace import Workspace
-from airhockey.agents.estimation.kalman import Noise, PuckEstimate, PuckFilter
+from airhockey.agents.estimation.kalman import Noise, PuckEstimate
 from airhockey.agents.estimation.prediction import PuckPredictor
-from airhockey.agents.table import CONTACT, opponent_in_table, to_table
+from airhockey.agents.estimation.watch import TableWatch
+from airhockey.agents.table import to_table
 
-_NEAR = 0.012
-"""Gap between puck and mallet, in [m], at which they may be touching within a step."""
 WARM_UP_STEPS = 60
 """Per skill and puck."""
 NOISE = Noise(drift_velocity=0.001, drift_share=0.002)
@@ -46,7 +45,7 @@ class BaselineAgent(AgentBase):
         super().__init__(env_info, agent_id, **kwargs)
         self._dt = float(env_info["dt"])
         self._controller = JointController(ArmKinematics(spec_of(env_info)), Workspace.of(env_info), self._dt)
-        self._filter = PuckFilter(self._dt, NOISE)
+        self._watch = TableWatch(env_info, NOISE)
         self._predictor = PuckPredictor()
         self._task = str(env_info["env_name"]).rpartition("-")[2]
         self._smash, self._drop = Smash(env_info), Drop(env_info)
@@ -65,7 +64,7 @@ class BaselineAgent(AgentBase):
     def reset(self) -> None:
         """See `AgentBase.reset`."""
         self._shots.serve()
-        self._filter.reset()
+        self._watch.reset()
         self._smash.forget()
         self._skill: Skill | None = None
         self._step = 0
@@ -93,10 +92,11 @@ class BaselineAgent(AgentBase):
                 for step in range(WARM_UP_STEPS):
                     puck = np.concatenate([np.array([-0.5, 0.1]) - step * self._dt * velocity, velocity, np.zeros(1)])
                     estimate = PuckEstimate(puck, 1e-6 * np.eye(5), 0)
-                    now = Situation(estimate, self._predictor, self._controller, opponent, step, self._dt)
                     if step == 0:
                         self._controller.reset(np.array(self._controller.kinematics.spec.start))
                         self._smash.forget()
+                    now = Situation(estimate, self._predictor, self._controller, opponent, step, self._dt)
+                    if step == 0:
                         skill.begin(now)
                     self._smash.scout(now)
                     skill.act(now)
@@ -118,17 +118,10 @@ class BaselineAgent(AgentBase):
         """The skill that has a stroke worth trying: a shot at the goal or, in a game where those are futile, a drop."""
         if self._task in ("defend", "prepare"):
             return None
-        has_shot = self._smash.scout(situation) is not None
-        if self._task == "hit" or not self._shots.futile:
-            return "smash" if has_shot else None
-        return "drop" if self._drop.scout(situation) is not None else None
+        if self._task != "hit" and self._shots.futile:
+            return "drop" if self._drop.scout(situation) is not None else None
+        return "smash" if self._smash.scout(situation) is not None else None
 
     def _look(self, observation: Array) -> Situation:
-        tip = to_table(self._controller.tip_position())
-        position, velocity = self.get_puck_state(observation)
-        opponent = opponent_in_table(observation, self.env_info)
-        puck = np.array([*to_table(position), position[2]])
-        mallets = [tip] if opponent is None else [tip, opponent]
-        touching = any(np.hypot(*(puck[:2] - mallet)) < CONTACT + _NEAR for mallet in mallets)
-        estimate = self._filter.update(puck, velocity, touching)
-        return Situation(estimate, self._predictor, self._controller, opponent, self._step, self._dt)
+        puck, opponent = self._watch.see(observation, to_table(self._controller.tip_position()))
+        return Situation(puck, self._predictor, self._controller, opponent, self._step, self._dt)

@@ -1,5 +1,7 @@
 """How the mallet gets to a place: briskly, to rest, and round the puck."""
 
+from math import hypot, sqrt
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -38,20 +40,20 @@ def approach(
         Position and velocity at the end of the step. Shapes (2,), (2,).
     """
     away = place - tip
-    distance = float(np.hypot(*away))
-    wanted = away * (min(speed, GAIN * distance, 0.85 * np.sqrt(2.0 * acceleration * distance)) / max(distance, 1e-9))
+    distance = hypot(*away)
+    wanted = away * (min(speed, GAIN * distance, 0.85 * sqrt(2.0 * acceleration * distance)) / max(distance, 1e-9))
     if keep_off is not None:
         wanted = _round(tip, wanted, place, keep_off, CONTACT + clearance)
     change = wanted - velocity
     largest = acceleration * dt
-    moving = velocity + change * min(1.0, largest / max(float(np.hypot(*change)), 1e-9))
+    moving = velocity + change * min(1.0, largest / max(hypot(*change), 1e-9))
     return tip + 0.5 * dt * (velocity + moving), moving
 
 
 def _round(tip: Array, wanted: Array, place: Array, puck: Array, distance: float) -> Array:
     """A velocity that slides along the circle about the puck instead of into it. Shape (2,)."""
     outwards = tip - puck
-    gap = float(np.hypot(*outwards))
+    gap = hypot(*outwards)
     outwards = outwards / max(gap, 1e-9)
     inwards = -float(wanted @ outwards)
     room = gap - distance

@@ -7,6 +7,7 @@ puck is leaving: get ahead of it).
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import hypot
 from pathlib import Path
 from typing import Any
 
@@ -212,7 +213,7 @@ class Defend:
         """Slow down, and make room for the puck."""
         p = self._parameters
         away = situation.tip - (situation.puck.position + 0.1 * situation.puck.velocity)
-        distance = max(float(np.hypot(*away)), 1e-6)
+        distance = max(hypot(*away), 1e-6)
         wanted = away / distance * p.retreat_speed if distance < CONTACT + p.clearance else np.zeros(2)
         return drive(situation, wanted, p.braking)
 

@@ -1,5 +1,7 @@
 """Moving the mallet without hurry: towards a velocity, to a place, and round the puck."""
 
+from math import hypot, sqrt
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,7 +24,7 @@ def drive(situation: Situation, velocity: Array, acceleration: float) -> Array:
     """
     tip, present = situation.tip, situation.tip_velocity
     change = velocity - present
-    size = max(float(np.hypot(*change)), 1e-9)
+    size = max(hypot(*change), 1e-9)
     after = present + change * min(1.0, acceleration * situation.dt / size)
     return situation.move(tip + 0.5 * situation.dt * (present + after), after)
 
@@ -30,8 +32,8 @@ def drive(situation: Situation, velocity: Array, acceleration: float) -> Array:
 def go_to(situation: Situation, place: Array, speed: float, acceleration: float, gain: float = 10.0) -> Array:
     """One step towards a place, arriving at rest. In [m], [m]/[s], [m]/[s²], [1/s]. Shape (2, n)."""
     way = place - situation.tip
-    distance = max(float(np.hypot(*way)), 1e-9)
-    braking = float(np.sqrt(1.2 * acceleration * distance))  # leaves a reserve: 2 a d would need all of it
+    distance = max(hypot(*way), 1e-9)
+    braking = sqrt(1.2 * acceleration * distance)  # leaves a reserve: 2 a d would need all of it
     return drive(situation, way / distance * min(speed, braking, gain * distance), acceleration)
 
 
@@ -40,7 +42,7 @@ def is_clear(start: Array, end: Array, puck: Array, clearance: float) -> bool:
     way = end - start
     length = float(way @ way)
     share = float(np.clip((puck - start) @ way / length, 0.0, 1.0)) if length > 1e-12 else 0.0
-    return bool(np.hypot(*(start + share * way - puck)) >= clearance)
+    return hypot(*(start + share * way - puck)) >= clearance
 
 
 def round_the_puck(
@@ -61,7 +63,7 @@ def round_the_puck(
     Returns:
         Shape (2,).
     """
-    near = min(CONTACT + gap, float(np.hypot(*(place - puck))), float(np.hypot(*(tip - puck)))) - 0.001
+    near = min(CONTACT + gap, hypot(*(place - puck)), hypot(*(tip - puck))) - 0.001
     if is_clear(tip, place, puck, near):
         return place
     radius = CONTACT + 2.0 * gap

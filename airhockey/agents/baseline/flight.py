@@ -1,13 +1,14 @@
 """The puck on its way: alone until it is struck, and afterwards to the opponent's goal. Compiled."""
 
 from math import erf, sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.baseline.rules import Rules
 from airhockey.agents.compiling import compiled
-from airhockey.agents.estimation.motion import advance, slide
+from airhockey.agents.estimation.motion import advance_by, decay_over, pieces_of, slide_by
 
 Array = NDArray[np.float64]
 
@@ -25,21 +26,43 @@ _NEAR = 0.35
 @compiled
 def move(state: Array, duration: float, motion: Array) -> None:
     """Move a state along, in place: in one piece where no rim is near, which is exact, else in small ones."""
-    reach = duration * max(abs(state[2]), abs(state[3]))
+    move_by(state, pace_of(duration, motion), motion)
+
+
+class Pace(NamedTuple):
+    """A duration [s], and what is known of it: `decay_over` it, the number of its pieces, `decay_over` a piece."""
+
+    duration: float
+    whole: tuple[float, float, float]
+    pieces: int
+    piece: tuple[float, float, float]
+
+
+@compiled
+def pace_of(duration: float, motion: Array) -> Pace:
+    """What `move_by` needs to know of a duration, in [s]."""
+    pieces = pieces_of(duration)
+    return Pace(duration, decay_over(duration, motion), pieces, decay_over(duration / pieces, motion))
+
+
+@compiled
+def move_by(state: Array, pace: Pace, motion: Array) -> None:
+    """`move` for a duration that occurs many times."""
+    reach = pace.duration * max(abs(state[2]), abs(state[3]))
     if abs(state[0]) + reach < motion[0] and abs(state[1]) + reach < motion[1]:
-        slide(state, duration, motion)
+        slide_by(state, pace.whole)
     else:
-        advance(state, duration, motion)
+        advance_by(state, pace.pieces, pace.piece, motion)
 
 
 @compiled
 def coast(puck: Array, step: float, count: int, motion: Array) -> Array:
     """A puck's states at every `step` [s] from now, undisturbed. Shape (count + 1, 5)."""
-    path = np.empty((count + 1, 5))
+    path, pace = np.empty((count + 1, 5)), pace_of(step, motion)
     path[0] = puck
     for k in range(count):
         path[k + 1] = path[k]
-        move(path[k + 1], step, motion)
+        move_by(path[k + 1], pace, motion)
     return path
 
 
@@ -66,9 +89,10 @@ def fly(puck: Array, opponent: Array, first: float, rules: Rules) -> tuple[float
         length [m], and the speed with which it passed the opponent [m]/[s].
     """
     state, gap, length, passing = puck.copy(), _MISSED, 0.0, 0.0
+    pace = pace_of(FLIGHT_STEP, rules.motion)
     for k in range(_FLIGHT_STEPS):
         before_x, before_y = state[0], state[1]
-        move(state, FLIGHT_STEP, rules.motion)
+        move_by(state, pace, rules.motion)
         length += sqrt((state[0] - before_x) ** 2 + (state[1] - before_y) ** 2)
         if state[2] < _STUCK:
             break

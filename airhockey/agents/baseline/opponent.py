@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
+from airhockey.agents.small_matrices import factor, solve_backward, solve_forward
 
 Array = NDArray[np.float64]
 
@@ -73,7 +74,7 @@ class OpponentTrack:
         if count < LEAST and not self._expected:
             return
         mean, spread = np.zeros((5, 2)), SPREAD
-        mean[0] = self._seen[-count:].mean(axis=0)
+        mean[0] = _mean(self._seen[-count:])
         if self._expected:
             mean, spread = figure_of_eight(RATE * self._dt * step), np.full((5, 2), EXPECTED_SPREAD)
         fit = _fit(self._seen[-count:], self._rate * self._dt, mean, spread)
@@ -90,7 +91,7 @@ class OpponentTrack:
         """Positions at times from now, in [s]. Shape (k,) → (k, 2)."""
         if not self.swinging:
             last = self._seen[-1] if self._count else np.full(2, 10.0)  # nowhere near
-            return np.tile(last, (len(times), 1))
+            return np.full((len(times), 2), last)
         return _swing(self._rate * times, self._coefficients)
 
 
@@ -115,28 +116,58 @@ def _fit(seen: Array, turn: float, mean: Array, spread: Array) -> tuple[Array, f
         mean, spread: Prior of the coefficients. Shapes (5, 2).
     """
     k = len(seen)
-    basis = np.empty((k, 5))
+    basis = _basis(turn * np.arange(1.0 - k, 1.0))
+    normal, coefficients = np.zeros((5, 5)), np.zeros((2, 5))
     for i in range(k):
-        _fill(basis[i], turn * (i + 1 - k))
-    normal, right = basis.T @ basis, basis.T @ seen
-    coefficients = np.empty((5, 2))
+        for a in range(5):
+            for b in range(a + 1):
+                normal[a, b] += basis[i, a] * basis[i, b]
+            for axis in range(2):
+                coefficients[axis, a] += basis[i, a] * seen[i, axis]
     for axis in range(2):
-        weights = (NOISE / spread[:, axis]) ** 2
-        coefficients[:, axis] = np.linalg.solve(normal + np.diag(weights), right[:, axis] + weights * mean[:, axis])
-    error = seen - basis @ coefficients
-    return coefficients, np.sqrt(np.sum(error * error) / k)
+        root = normal.copy()
+        for a in range(5):
+            weight = (NOISE / spread[a, axis]) ** 2
+            root[a, a] += weight
+            coefficients[axis, a] += weight * mean[a, axis]
+        factor(root)
+        solve_forward(root, coefficients[axis])
+        solve_backward(root, coefficients[axis])
+    total = 0.0
+    for i in range(k):
+        for axis in range(2):
+            error = seen[i, axis]
+            for a in range(5):
+                error -= basis[i, a] * coefficients[axis, a]
+            total += error * error
+    return coefficients.T.copy(), np.sqrt(total / k)
 
 
 @compiled
 def _swing(phases: Array, coefficients: Array) -> Array:
-    basis = np.empty((len(phases), 5))
+    basis, places = _basis(phases), np.zeros((len(phases), 2))
     for i in range(len(phases)):
-        _fill(basis[i], phases[i])
-    return basis @ coefficients
+        for a in range(5):
+            for axis in range(2):
+                places[i, axis] += basis[i, a] * coefficients[a, axis]
+    return places
 
 
 @compiled
-def _fill(row: Array, phase: float) -> None:
-    row[0] = 1.0
-    row[1], row[2] = np.cos(phase), np.sin(phase)
-    row[3], row[4] = np.cos(2.0 * phase), np.sin(2.0 * phase)
+def _basis(phases: Array) -> Array:
+    """1, cos φ, sin φ, cos 2φ, sin 2φ. Shape (k, 5)."""
+    basis = np.empty((len(phases), 5))
+    for i in range(len(phases)):
+        c, s = np.cos(phases[i]), np.sin(phases[i])
+        basis[i, 0], basis[i, 1], basis[i, 2], basis[i, 3], basis[i, 4] = 1.0, c, s, 2.0 * c * c - 1.0, 2.0 * s * c
+    return basis
+
+
+@compiled
+def _mean(seen: Array) -> Array:
+    """Of all rows. Shape (k, 2) → (2,)."""
+    mean = np.zeros(2)
+    for i in range(len(seen)):
+        mean[0] += seen[i, 0]
+        mean[1] += seen[i, 1]
+    return mean / len(seen)

@@ -1,6 +1,9 @@
 """The search for a shot, spread over the control steps: a few candidates at each, and the best so far is kept up to date."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from airhockey.agents.baseline.flight import FLIGHT_STEP, coast, state_at
 from airhockey.agents.baseline.opponent import OpponentTrack
@@ -10,6 +13,7 @@ from airhockey.agents.baseline.shots import Shot, judge
 from airhockey.agents.baseline.skill import Array, Situation
 from airhockey.agents.compiling import compiled
 from airhockey.agents.control.workspace import Workspace
+from airhockey.envs.kernel.memory import pack
 
 FLIGHT = 2.0
 """Longest flight after the longest wait for which the opponent is predicted, in [s]."""
@@ -35,10 +39,11 @@ class ShotPlanner:
             least: Value below which there is no shot.
         """
         self._parameters, self._dt, self._least = parameters, dt, least
-        self._rules = make_rules(parameters, workspace)
+        rules = make_rules(parameters, workspace)
+        self._motion, self._rules = rules.motion, pack(rules)
         self._times = np.arange(0.0, parameters.longest_wait + FLIGHT, FLIGHT_STEP)
         self.reset()
-        path = coast(np.array([-0.5, 0.0, 0.0, 0.0, 0.0]), dt, 10, self._rules.motion)
+        path = coast(np.array([-0.5, 0.0, 0.0, 0.0, 0.0]), dt, 10, self._motion)
         search(path, dt, np.array([-0.8, 0.0]), np.zeros((2, 2)), 0.1, _NONE, 0, 2, 1.0, 0.0, self._rules)
 
     def reset(self) -> None:
@@ -61,7 +66,7 @@ class ShotPlanner:
         if best.value > GOOD:
             count, horizon = count // 3, min(horizon, best.wait + BEYOND)
         steps = max(1, int(np.ceil(max(horizon, best.wait) / self._dt)))
-        path: Array = coast(situation.puck.state, self._dt, steps, self._rules.motion)
+        path: Array = coast(situation.puck.state, self._dt, steps, self._motion)
         self._best = search(
             path, self._dt, situation.tip,
             opponent.predict(self._times), 0.0 if opponent.swinging else p.opponent_doubt,
@@ -83,7 +88,7 @@ def search(
     count: int,
     horizon: float,
     improvement: float,
-    rules: Rules,
+    packed: NDArray[Any],
 ) -> Shot:
     """Try shots and keep the best: half of them anywhere, half of them near the best so far.
 
@@ -96,8 +101,9 @@ def search(
         count: How many to try.
         horizon: Longest wait, in [s].
         improvement: By how much another shot must be better than the best.
-        rules: Constants.
+        packed: A record of `Rules`.
     """
+    rules = packed[0]
     horizon = min(horizon, _safe_time(path, path_step, rules))
     best = judge(
         state_at(path, path_step, best.wait), best.wait, best.aim, best.wall, tip, opponent, doubt, -LENIENCE, rules

@@ -1,9 +1,8 @@
 """`ready`: the mallet goes to where it can answer most things, and waits."""
 
 from collections.abc import Mapping
+from math import hypot
 from typing import Any
-
-import numpy as np
 
 from airhockey.agents.baseline.skill import Array, Situation
 from airhockey.agents.table import HOME
@@ -36,12 +35,12 @@ class Ready:
     def act(self, situation: Situation) -> Array:
         """See `Skill.act`."""
         away = self._place - situation.tip
-        distance = float(np.hypot(*away))
+        distance = hypot(*away)
         self.finished = distance < ARRIVED
         self.phase = "wait" if self.finished else "return"
         wanted = away * min(GAIN, FULL_SPEED / max(distance, 1e-9))
         change = wanted - situation.tip_velocity
         largest = SHARPNESS * situation.dt
-        velocity = situation.tip_velocity + change * min(1.0, largest / max(float(np.hypot(*change)), 1e-9))
+        velocity = situation.tip_velocity + change * min(1.0, largest / max(hypot(*change), 1e-9))
         target = situation.tip + 0.5 * situation.dt * (situation.tip_velocity + velocity)
         return situation.move(target, velocity)

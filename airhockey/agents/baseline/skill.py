@@ -4,8 +4,7 @@ In the plane of the table everything is given in the table frame (`airhockey.age
 opponent), like the estimate of the puck. Only the joint controller thinks in the robot frame: `to_robot` is the way there.
 """
 
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -31,6 +30,8 @@ class Situation:
         opponent: The opponent's mallet as seen, in the table frame, or None where there is no opponent. Shape (2,).
         step: Control steps since the serve; 0 at the first observation.
         dt: Length of a control step, in [s].
+        tip: Commanded position of the rod tip before this step, in the table frame, in [m]. Shape (2,).
+        tip_velocity: Its commanded velocity, in [m]/[s]. Shape (2,).
     """
 
     puck: PuckEstimate
@@ -39,16 +40,13 @@ class Situation:
     opponent: Array | None
     step: int
     dt: float
+    tip: Array = field(init=False)
+    tip_velocity: Array = field(init=False)
 
-    @cached_property
-    def tip(self) -> Array:
-        """Commanded position of the rod tip before this step, in the table frame, in [m]. Shape (2,)."""
-        return to_table(self.controller.tip_position())
-
-    @cached_property
-    def tip_velocity(self) -> Array:
-        """Commanded velocity of the rod tip, in [m]/[s]. Shape (2,)."""
-        return self.controller.tip_velocity()
+    def __post_init__(self) -> None:
+        """Note where the rod tip is before it is commanded elsewhere."""
+        object.__setattr__(self, "tip", to_table(self.controller.tip_position()))
+        object.__setattr__(self, "tip_velocity", self.controller.tip_velocity())
 
     def puck_at(self, time: float) -> tuple[Array, Array]:
         """State (x, y, ẋ, ẏ, yaw rate) and covariance of the puck a time from now, in [s]. Shapes (5,), (5, 5)."""

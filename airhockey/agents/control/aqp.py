@@ -1,14 +1,18 @@
 """Anchored quadratic programming (AQP): a velocity of the rod tip → a joint velocity, its redundancy held by an anchor.
 
-Liu, Tateo, Bou-Ammar and Peters, "Efficient and Reactive Planning for High Speed Robot Air Hockey" (IROS 2021).
+Liu, Tateo, Bou-Ammar and Peters, "Efficient and Reactive Planning for High Speed Robot Air Hockey" (IROS 2021). They write
+q̇ = b + Nα with b = J⁺v and N a basis of the null space of J, and choose α; here the same q̇ is found without a basis, with
+J q̇ = v as equalities.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.agents.compiling import compiled
 from airhockey.agents.control.qp import QuadraticProgram
+from airhockey.agents.small_matrices import factor
 
 Array = NDArray[np.float64]
 
@@ -16,8 +20,7 @@ SINGULAR = 1e-6
 """A Jacobian with a singular value below this, in [m]/[rad], counts as singular: the exact problem is not tried."""
 
 
-@dataclass(frozen=True)
-class VelocityLimits:
+class VelocityLimits(NamedTuple):
     """What a joint velocity must satisfy: lower ≤ q̇ ≤ upper, and rows · q̇ ≥ row_lower.
 
     Attributes:
@@ -31,19 +34,21 @@ class VelocityLimits:
     rows: Array
     row_lower: Array
 
-    def with_rows(self, rows: Array, row_lower: Array) -> "VelocityLimits":
-        """These limits and more rows. Shapes (j, n), (j,)."""
-        return VelocityLimits(
-            self.lower, self.upper, np.vstack([self.rows, rows]), np.concatenate([self.row_lower, row_lower])
-        )
+
+class Problem(NamedTuple):
+    """A quadratic programme, as `QuadraticProgram.solve` takes it."""
+
+    hessian: Array
+    gradient: Array
+    rows: Array
+    lower: Array
+    upper: Array
 
 
 class AnchoredQp:
     """Chooses among the joint velocities that move the rod tip as asked the one closest to the anchor.
 
-    With b = J⁺v and N an orthonormal basis of the null space of J:
-
-        minimise over α  ½ ‖b + Nα − q̇_anchor‖²_W   subject to   lower ≤ b + Nα ≤ upper,   rows (b + Nα) ≥ row_lower
+    minimise  ½ ‖q̇ − q̇_anchor‖²_W   subject to   J q̇ = v,   lower ≤ q̇ ≤ upper,   rows q̇ ≥ row_lower
     """
 
     def __init__(self, weights: Array, solver: QuadraticProgram) -> None:
@@ -68,23 +73,9 @@ class AnchoredQp:
         Returns:
             q̇ in [rad]/[s], shape (n,); None where the limits do not allow v, or J is singular.
         """
-        m = jacobian.shape[0]
-        u, s, vt = np.linalg.svd(jacobian)
-        if s[-1] < SINGULAR:
+        if is_singular(jacobian):
             return None
-        b = ((u.T @ velocity) / s) @ vt[:m]
-        basis = vt[m:].T
-        if basis.shape[1] == 0:
-            return b if _within(b, limits) else None
-        weighted = basis.T * self.weights
-        alpha = self._solver.solve(
-            np.ascontiguousarray(weighted @ basis),
-            weighted @ (b - anchor),
-            np.concatenate([basis, limits.rows @ basis]),
-            np.concatenate([limits.lower - b, limits.row_lower - limits.rows @ b]),
-            np.concatenate([limits.upper - b, np.full(len(limits.row_lower), np.inf)]),
-        )
-        return None if alpha is None else b + basis @ alpha
+        return self._solver.solve(*exact_problem(jacobian, velocity, anchor, limits, self.weights))
 
     def solve_relaxed(
         self, jacobian: Array, velocity: Array, anchor: Array, limits: VelocityLimits, tracking: Array
@@ -101,20 +92,66 @@ class AnchoredQp:
         Returns:
             q̇ in [rad]/[s], shape (n,); None where the limits contradict one another.
         """
-        n = jacobian.shape[1]
-        pull = jacobian.T @ tracking
-        return self._solver.solve(
-            pull @ jacobian + np.diag(self.weights),
-            -(pull @ velocity + self.weights * anchor),
-            np.concatenate([np.eye(n), limits.rows]),
-            np.concatenate([limits.lower, limits.row_lower]),
-            np.concatenate([limits.upper, np.full(len(limits.row_lower), np.inf)]),
-        )
+        return self._solver.solve(*relaxed_problem(jacobian, velocity, anchor, limits, tracking, self.weights))
 
 
-def _within(velocity: Array, limits: VelocityLimits, tolerance: float = 1e-9) -> bool:
-    return bool(
-        np.all(velocity >= limits.lower - tolerance)
-        and np.all(velocity <= limits.upper + tolerance)
-        and np.all(limits.rows @ velocity >= limits.row_lower - tolerance)
-    )
+@compiled
+def is_singular(jacobian: Array) -> bool:
+    """Whether J has a singular value below `SINGULAR`: J Jᵀ − SINGULAR² I is not positive definite then. Shape (m, n)."""
+    m, n = jacobian.shape
+    gram = np.zeros((m, m))
+    for i in range(m):
+        for j in range(i + 1):
+            for k in range(n):
+                gram[i, j] += jacobian[i, k] * jacobian[j, k]
+        gram[i, i] -= SINGULAR * SINGULAR
+    return not factor(gram)
+
+
+@compiled
+def exact_problem(jacobian: Array, velocity: Array, anchor: Array, limits: VelocityLimits, weights: Array) -> Problem:
+    """The problem of `AnchoredQp.solve`, whose arguments these are."""
+    m, n = jacobian.shape
+    problem = _limited(limits, m)
+    for i in range(n):
+        problem.hessian[i, i] = weights[i]
+        problem.gradient[i] = -weights[i] * anchor[i]
+    for i in range(m):
+        problem.rows[i] = jacobian[i]
+        problem.lower[i] = problem.upper[i] = velocity[i]
+    return problem
+
+
+@compiled
+def relaxed_problem(
+    jacobian: Array, velocity: Array, anchor: Array, limits: VelocityLimits, tracking: Array, weights: Array
+) -> Problem:
+    """The problem of `AnchoredQp.solve_relaxed`, whose arguments these are."""
+    m, n = jacobian.shape
+    problem = _limited(limits, 0)
+    for i in range(n):
+        problem.hessian[i, i] = weights[i]
+        problem.gradient[i] = -weights[i] * anchor[i]
+        for a in range(m):
+            pull = 0.0
+            for b in range(m):
+                pull += tracking[a, b] * jacobian[b, i]
+            problem.gradient[i] -= pull * velocity[a]
+            for j in range(n):
+                problem.hessian[i, j] += pull * jacobian[a, j]
+    return problem
+
+
+@compiled
+def _limited(limits: VelocityLimits, first: int) -> Problem:
+    """A problem of which only the limits are written, after so many rows left free."""
+    k, n = limits.rows.shape
+    size = first + n + k
+    problem = Problem(np.zeros((n, n)), np.zeros(n), np.zeros((size, n)), np.empty(size), np.full(size, np.inf))
+    for i in range(n):
+        problem.rows[first + i, i] = 1.0
+        problem.lower[first + i], problem.upper[first + i] = limits.lower[i], limits.upper[i]
+    for i in range(k):
+        problem.rows[first + n + i] = limits.rows[i]
+        problem.lower[first + n + i] = limits.row_lower[i]
+    return problem

@@ -1,7 +1,4 @@
-"""How fast something may move now and still stop in time: joints before their limits, the rod tip before the edges.
-
-Compiled, because it is asked several times in every control step.
-"""
+"""How fast something may move now and still stop in time: joints before their limits, the rod tip before the edges."""
 
 from math import sqrt
 
@@ -30,7 +27,7 @@ def stopping_speed(distance: float, acceleration: float, dt: float) -> float:
 
 @compiled
 def box_speeds(position: Array, lower: Array, upper: Array, acceleration: float, dt: float) -> Array:
-    """Least and largest velocities at a position within a box. Shape (2, k)."""
+    """The velocities from which something at a position within a box can stop before its sides. Shape (2, k)."""
     speeds = np.empty((2, position.size))
     for i in range(position.size):
         speeds[0, i] = -stopping_speed(position[i] - lower[i], acceleration, dt)
@@ -42,7 +39,19 @@ def box_speeds(position: Array, lower: Array, upper: Array, acceleration: float,
 def joint_speeds(
     q: Array, velocity: Array, position_limit: Array, velocity_limit: Array, acceleration: Array, dt: float
 ) -> Array:
-    """Least and largest joint velocities at the end of a step; see `JointBounds.velocities`. Shape (2, n)."""
+    """Least and largest joint velocities at the end of the coming step.
+
+    A joint at distance d from its limit, after moving on with its present velocity for half a step (equation 4.1 of the
+    thesis), may end the step with the v that still stops in time: v²/(2a) + v Δt = d. The bounds never contradict the
+    acceleration limit: a joint that is too fast is asked for the strongest braking.
+
+    Args:
+        q, velocity: Commanded joint positions [rad] and velocities [rad]/[s]. Shape (n,).
+        position_limit, velocity_limit, acceleration, dt: See `bounds.JointBounds`.
+
+    Returns:
+        In [rad]/[s]. Shape (2, n).
+    """
     speeds = np.empty((2, q.size))
     for i in range(q.size):
         coasted = q[i] + 0.5 * dt * velocity[i]

@@ -10,12 +10,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.control.aqp import AnchoredQp, VelocityLimits
-from airhockey.agents.control.bounds import JointBounds
+from airhockey.agents.control.aqp import AnchoredQp
 from airhockey.agents.control.kinematics import ArmKinematics
 from airhockey.agents.control.parameters import ControlParameters, control_parameters
-from airhockey.agents.control.qp import make_solver
-from airhockey.agents.control.speed_limit import largest_speed
+from airhockey.agents.control.qp import DEFAULT, make_solver
+from airhockey.agents.control.tip_step import (
+    Demand,
+    advance,
+    demand,
+    end_state,
+    relaxed_demand,
+    step_model,
+    stopping,
+    tip_velocity_to,
+)
 from airhockey.agents.control.workspace import Workspace
 
 Array = NDArray[np.float64]
@@ -26,26 +34,40 @@ class JointState:
     """A joint command, and where it puts the rod tip.
 
     Attributes:
-        position: In [rad]. Shape (n,).
-        velocity: In [rad]/[s]. Shape (n,).
-        tip: Rod tip in the robot frame, in [m]. Shape (2,).
-        tip_velocity: In [m]/[s]. Shape (2,).
+        values: All of it, as `tip_step` takes and gives it. Shape (2 n + 4,).
     """
 
-    position: Array
-    velocity: Array
-    tip: Array
-    tip_velocity: Array
+    values: Array
 
     @classmethod
     def of(cls, kinematics: ArmKinematics, position: Array, velocity: Array) -> "JointState":
         """The state with these joint positions and velocities. Shapes (n,), (n,)."""
         tip, jacobian = kinematics.position_and_jacobian(position)
-        return cls(position, velocity, tip[:2], jacobian[:2] @ velocity)
+        return cls(np.concatenate([position, velocity, tip[:2], jacobian[:2] @ velocity]))
+
+    @property
+    def position(self) -> Array:
+        """Of the joints, in [rad]. Shape (n,)."""
+        return self.values[: len(self.values) // 2 - 2]
+
+    @property
+    def velocity(self) -> Array:
+        """Of the joints, in [rad]/[s]. Shape (n,)."""
+        return self.values[len(self.values) // 2 - 2 : -4]
+
+    @property
+    def tip(self) -> Array:
+        """Rod tip in the robot frame, in [m]. Shape (2,)."""
+        return self.values[-4:-2]
+
+    @property
+    def tip_velocity(self) -> Array:
+        """In [m]/[s]. Shape (2,)."""
+        return self.values[-2:]
 
     def as_action(self) -> Array:
         """The command for interpolation order 3, a fresh array. Shape (2, n)."""
-        return np.array([self.position, self.velocity])
+        return self.values[:-4].reshape((2, -1)).copy()
 
 
 class JointController:
@@ -79,8 +101,9 @@ class JointController:
         spec = kinematics.spec
         self.kinematics, self.workspace, self.dt = kinematics, workspace, dt
         self.parameters = p = parameters or control_parameters(spec)
-        self._bounds = JointBounds.of(spec, p.position_share, p.velocity_share, p.acceleration_share, dt)
-        self._qp = AnchoredQp(np.array(p.anchor_weights), make_solver(p.solver))
+        self._model = step_model(spec, p, workspace, dt)
+        # The package's own solver is part of the compiled step.
+        self._qp = AnchoredQp(np.array(p.anchor_weights), make_solver(p.solver)) if p.solver != DEFAULT else None
         self._posture = np.array(p.anchor)
         self.height = spec.desired_height
         self.exact = True
@@ -121,7 +144,7 @@ class JointController:
 
     def brake(self) -> Array:
         """Bring the rod tip to rest as fast as the limits allow. Returns the joint command. Shape (2, n)."""
-        self.state, self.exact = self._advance(self.state, np.zeros(2), None)
+        self.state, self.exact = self._advance(self.state, np.zeros(2), self._posture)
         return self.state.as_action()
 
     def hold(self) -> Array:
@@ -133,74 +156,30 @@ class JointController:
         self, state: JointState, target: Array, velocity: Array | None = None, anchor: Array | None = None
     ) -> tuple[JointState, bool]:
         """What `step` would command from a state, and whether it meets the target exactly. Changes nothing."""
-        dt, target = self.dt, self.workspace.clip(target)
-        if velocity is None:
-            return self._advance(state, (target - state.tip) / dt, anchor)
-        # Ending the step with the target's velocity leaves this error, of which a share is removed (all of it in two
-        # steps at a gain of 1).
-        error = target - state.tip - 0.5 * dt * (state.tip_velocity + velocity)
-        return self._advance(state, velocity + self.parameters.position_gain * error / dt, anchor)
+        anchor = self._posture if anchor is None else anchor
+        return self._advance(state, tip_velocity_to(state.values[-4:], target, velocity, self._model), anchor)
 
-    def _advance(self, state: JointState, tip_velocity: Array, anchor: Array | None) -> tuple[JointState, bool]:
+    def _advance(self, state: JointState, tip_velocity: Array, anchor: Array) -> tuple[JointState, bool]:
         """One step whose end has a given tip velocity (2,), as nearly as the limits allow."""
-        dt, m = self.dt, self.kinematics.n_coordinates
-        ahead = state.position + dt * state.velocity  # the end of the step if the present velocity lasts
-        position, jacobian = self.kinematics.position_and_jacobian(ahead)
-        present = jacobian @ state.velocity
-        edges = self.workspace.velocity_bounds(position[:2] - 0.5 * dt * present[:2])
-        wanted = np.empty(m)
-        wanted[:2] = np.minimum(np.maximum(tip_velocity, edges[0]), edges[1])
-        if m == 3:  # half of the change of velocity moves the tip as well
-            error = self.height - position[2] + 0.5 * dt * present[2]
-            wanted[2] = self.parameters.position_gain * error / dt
-        pull = self.parameters.anchor_gain * ((self._posture if anchor is None else anchor) - state.position)
-        limits = self._limits(state, ahead)
-        velocity = self._qp.solve(jacobian[:m], wanted, pull, limits)
-        exact = velocity is not None
-        if velocity is None:
-            velocity = self._nearest(jacobian, wanted, pull, limits, edges)
-        moved = state.position + 0.5 * dt * (state.velocity + velocity)  # (4.1)
-        return JointState.of(self.kinematics, moved, velocity), exact
+        if self._qp is None:
+            values, exact = advance(state.values, tip_velocity, anchor, self._model)
+            return JointState(values), exact
+        model = self._model[0]
+        asked = demand(state.position, state.velocity, tip_velocity, anchor, model)
+        new_velocity = self._qp.solve(asked.jacobian, asked.velocity, asked.anchor, asked.limits)
+        exact = new_velocity is not None
+        if new_velocity is None:
+            new_velocity = self._nearest(self._qp, asked)
+        return JointState(end_state(state.position, state.velocity, new_velocity, model)), exact
 
-    def _nearest(self, jacobian: Array, wanted: Array, pull: Array, limits: VelocityLimits, edges: Array) -> Array:
-        """The joint velocity within the limits that comes nearest to the wanted velocity of the tip. Shape (n,)."""
-        j = jacobian[: len(wanted)]
-        wanted[:2] = self._slowed(j, wanted[:2])
-        tracking = self._tracking(wanted[:2], len(wanted))
-        inside = limits.with_rows(np.vstack([j[:2], -j[:2]]), np.concatenate([edges[0], -edges[1]]))
-        for soft in (inside, limits):  # braking as hard as the joints can may not be enough for the edges
-            velocity = self._qp.solve_relaxed(j, wanted, pull, soft, tracking)
+    def _nearest(self, qp: AnchoredQp, asked: Demand) -> Array:
+        """`joint_velocity_for` by another solver, where what is asked cannot be done. Shape (n,)."""
+        soft, tracking = relaxed_demand(asked, self._model[0])
+        for limits in (soft.limits, asked.limits):
+            velocity = qp.solve_relaxed(soft.jacobian, soft.velocity, soft.anchor, limits, tracking)
             if velocity is not None:
                 return velocity
-        # Only the height rows can contradict the box now: keep the box, and stop.
-        return np.clip(np.zeros_like(pull), limits.lower, limits.upper)
-
-    def _slowed(self, jacobian: Array, tip_velocity: Array) -> Array:
-        """The tip velocity at a speed that the joints can reach, so that direction is not traded for speed."""
-        speed = float(np.hypot(*tip_velocity))
-        if speed < 1e-6:
-            return tip_velocity
-        direction = np.zeros(len(jacobian))
-        direction[:2] = tip_velocity / speed
-        return tip_velocity * min(1.0, largest_speed(jacobian, direction, *self._bounds.velocity) / speed)
-
-    def _limits(self, state: JointState, ahead: Array) -> VelocityLimits:
-        lower, upper = self._bounds.velocities(state.position, state.velocity)
-        heights, rows = self.kinematics.link_heights_and_jacobian(ahead)
-        p = self.parameters
-        return VelocityLimits(lower, upper, rows, -p.link_height_gain * (heights - p.link_height))
-
-    def _tracking(self, tip_velocity: Array, m: int) -> Array:
-        """Weights of errors of the tip's velocity: along the asked direction, across it, vertically. Shape (m, m)."""
-        p = self.parameters
-        weights = np.eye(m)
-        speed = float(np.hypot(*tip_velocity))
-        if speed > 1e-6:
-            along = tip_velocity / speed
-            weights[:2, :2] = p.sideways_weight * np.eye(2) + (1.0 - p.sideways_weight) * np.outer(along, along)
-        if m == 3:
-            weights[2, 2] = p.height_weight
-        return p.tracking_weight * weights
+        return np.asarray(stopping(asked.limits))
 
     def _warm_up(self) -> None:
         """First calls load, compile and allocate: make them before the game."""

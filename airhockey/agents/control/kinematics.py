@@ -1,16 +1,17 @@
-"""Forward kinematics and Jacobians of both robots by Pinocchio, in the robot's own frame.
+"""Forward kinematics and Jacobians of both robots, in the robot's own frame.
 
-The model is built in code from `airhockey.envs.specs`: the same chain of links that the simulator compiles, without
-masses.
+The chain of links is that of `airhockey.envs.specs`, and the compiled functions are those of the simulator's own controller.
 """
 
 from collections.abc import Mapping
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
 
+from airhockey.agents.compiling import compiled
+from airhockey.envs.kernel.chain import SerialChain, forward_kinematics, point_jacobian
 from airhockey.envs.specs import IIWA, PLANAR, RobotSpec
 
 Array = NDArray[np.float64]
@@ -19,9 +20,27 @@ ELBOW_LINK, WRIST_LINK = 4, 7
 """Links of the iiwa whose origins must stay above a height (challenge's section 5)."""
 
 
+class Chain(NamedTuple):
+    """Links that turn about their own z axes. See `airhockey.envs.kernel.chain.SerialChain`."""
+
+    offset: Array
+    rotation: Array
+    tip: Array
+
+
 def spec_of(env_info: Mapping[str, Any]) -> RobotSpec:
     """The robot that `env_info` describes."""
     return IIWA if env_info["robot"]["n_joints"] == IIWA.n_joints else PLANAR
+
+
+@cache
+def chain_of(spec: RobotSpec) -> Chain:
+    """A robot's links, and the rod at their end."""
+    return Chain(
+        np.array([link.position for link in spec.links], dtype=float),
+        np.array([_matrix(link.quaternion) for link in spec.links]),
+        np.sum([body.position for body in spec.tip], axis=0, dtype=float),
+    )
 
 
 class ArmKinematics:
@@ -29,6 +48,7 @@ class ArmKinematics:
 
     Attributes:
         spec: Dimensions and limits of the robot.
+        chain: Its links.
         n_joints: n.
         n_coordinates: How many coordinates of the rod tip the joints move: 3, or 2 on the planar robot, whose height
             is fixed.
@@ -36,17 +56,11 @@ class ArmKinematics:
     """
 
     def __init__(self, spec: RobotSpec) -> None:
-        """Build the Pinocchio model of a robot.
-
-        Args:
-            spec: Dimensions of the robot.
-        """
-        self.spec = spec
+        """Take the dimensions of a robot."""
+        self.spec, self.chain = spec, chain_of(spec)
         self.n_joints = spec.n_joints
         self.has_link_heights = spec.n_joints >= WRIST_LINK
         self.n_coordinates = 3 if self.has_link_heights else 2
-        self._model, self._tip = _build_model(spec)
-        self._data = self._model.createData()
 
     def position(self, q: Array) -> Array:
         """Position of the rod tip, in [m].
@@ -57,59 +71,75 @@ class ArmKinematics:
         Returns:
             Coordinates in the robot frame. Shape (3,).
         """
-        pin.forwardKinematics(self._model, self._data, q)
-        return np.array(pin.updateFramePlacement(self._model, self._data, self._tip).translation)
+        return self.position_and_jacobian(q)[0]
 
     def jacobian(self, q: Array) -> Array:
         """Position Jacobian of the rod tip, in [m]/[rad]. Shape (3, n)."""
-        return np.array(
-            pin.computeFrameJacobian(self._model, self._data, q, self._tip, pin.LOCAL_WORLD_ALIGNED)[:3], order="C"
-        )
+        return self.position_and_jacobian(q)[1]
 
     def position_and_jacobian(self, q: Array) -> tuple[Array, Array]:
-        """Both of the above, at the price of one pass. Shapes (3,), (3, n)."""
-        jacobian = self.jacobian(q)
-        return np.array(pin.updateFramePlacement(self._model, self._data, self._tip).translation), jacobian
+        """Both of the above. Shapes (3,), (3, n)."""
+        position, jacobian = tip_and_jacobian(self.chain, q)
+        return position, jacobian
 
     def rotation(self, q: Array) -> Array:
         """Rotation of the rod: its axes as columns, in the robot frame. Shape (3, 3)."""
-        pin.forwardKinematics(self._model, self._data, q)
-        return np.array(pin.updateFramePlacement(self._model, self._data, self._tip).rotation)
+        _, axes = locate(self.chain, q)
+        return np.stack([axes[-2], axes[-1], axes[-3]], axis=1)
 
     def link_heights(self, q: Array) -> Array:
         """Heights of elbow and wrist above the robot's base, in [m]; empty on the planar robot. Shape (2,) or (0,)."""
-        if not self.has_link_heights:
-            return np.empty(0)
-        pin.forwardKinematics(self._model, self._data, q)
-        return self._heights()
+        return self.link_heights_and_jacobian(q)[0]
 
     def link_heights_and_jacobian(self, q: Array) -> tuple[Array, Array]:
         """Heights of elbow and wrist, and how the joints move them. Shapes (2,), (2, n), or (0,), (0, n)."""
-        if not self.has_link_heights:
-            return np.empty(0), np.empty((0, self.n_joints))
-        pin.computeJointJacobians(self._model, self._data, q)
-        rows = [
-            pin.getJointJacobian(self._model, self._data, link, pin.LOCAL_WORLD_ALIGNED)[2]
-            for link in (ELBOW_LINK, WRIST_LINK)
-        ]
-        return self._heights(), np.array(rows)
-
-    def _heights(self) -> Array:
-        return np.array([self._data.oMi[link].translation[2] for link in (ELBOW_LINK, WRIST_LINK)])
+        heights, rows = heights_and_jacobian(*locate(self.chain, q))
+        return heights, rows
 
 
-def _build_model(spec: RobotSpec) -> tuple[pin.Model, int]:
-    """A chain of joints about their own z axes, and the index of the rod tip's frame at its end."""
-    model = pin.Model()
-    joint = 0
-    for number, link in enumerate(spec.links, start=1):
-        joint = model.addJoint(joint, pin.JointModelRZ(), _placement(link.position, link.quaternion), f"joint_{number}")
-    tip = pin.SE3.Identity()
-    for body in spec.tip:
-        tip = tip * _placement(body.position, (1.0, 0.0, 0.0, 0.0))
-    return model, model.addFrame(pin.Frame("ee", joint, 0, tip, pin.FrameType.OP_FRAME))
+@compiled
+def locate(chain: SerialChain, q: Array) -> tuple[Array, Array]:
+    """Positions of the links and the tip, and axes, as of `forward_kinematics`. Shapes (n + 1, 3), (n + 2, 3)."""
+    n = len(q)
+    positions, axes = np.empty((n + 1, 3)), np.empty((n + 2, 3))
+    forward_kinematics(chain, q, positions, axes)
+    return positions, axes
 
 
-def _placement(position: tuple[float, float, float], quaternion: tuple[float, float, float, float]) -> pin.SE3:
+@compiled
+def tip_and_jacobian(chain: Chain, q: Array) -> tuple[Array, Array]:
+    """Position of the rod tip, and its Jacobian. Shapes (3,), (3, n)."""
+    positions, axes = locate(chain, q)
+    return positions[-1], jacobian_of(positions, axes, len(q))
+
+
+@compiled
+def jacobian_of(positions: Array, axes: Array, point: int) -> Array:
+    """Jacobian of a link's origin, or of the tip (n), from what `locate` gave. Shape (3, n)."""
+    jacobian = np.empty((3, len(positions) - 1))
+    point_jacobian(positions, axes, point, jacobian)
+    return jacobian
+
+
+@compiled
+def heights_and_jacobian(positions: Array, axes: Array) -> tuple[Array, Array]:
+    """Heights of elbow and wrist, and their Jacobian, from what `locate` gave. Shapes (2,), (2, n), or (0,), (0, n)."""
+    n = len(positions) - 1
+    count = 2 if n >= WRIST_LINK else 0
+    heights, rows = np.empty(count), np.empty((count, n))
+    for i in range(count):
+        link = (ELBOW_LINK if i == 0 else WRIST_LINK) - 1
+        heights[i], rows[i] = positions[link, 2], jacobian_of(positions, axes, link)[2]
+    return heights, rows
+
+
+def _matrix(quaternion: tuple[float, float, float, float]) -> Array:
+    """Rotation matrix of a quaternion (w, x, y, z) of any length. Shape (3, 3)."""
     w, x, y, z = np.asarray(quaternion) / np.linalg.norm(quaternion)
-    return pin.SE3(pin.Quaternion(w, x, y, z).toRotationMatrix(), np.asarray(position, dtype=float))
+    return np.array(
+        [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+        ]
+    )

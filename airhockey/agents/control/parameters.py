@@ -13,7 +13,7 @@ class ControlParameters:
     """Margins and weights of the joint controller.
 
     Attributes:
-        solver: "daqp" or "osqp".
+        solver: "dual", "daqp" or "osqp".
         velocity_share, position_share: Of the joints' limits; the constraints count a violation beyond 0.95.
         acceleration_share: Of the joints' acceleration limits.
         anchor: Comfortable posture that the null space is drawn to, in [rad]. n values.

@@ -1,8 +1,9 @@
-"""Small convex quadratic programmes behind one call, with two solvers: DAQP (active set, exact) and OSQP (first order).
+"""Small convex quadratic programmes behind one call, with three solvers.
 
     minimise ½ xᵀHx + gᵀx   subject to   lower ≤ Ax ≤ upper
 
-An equality is a row whose bounds coincide. DAQP solves the problems of this package in about 5 µs and is the default.
+An equality is a row whose bounds coincide. The package's own (`dual_qp`: active set, exact) can be called from compiled code
+and is the default; DAQP is another exact active-set method, OSQP one of first order.
 """
 
 from typing import Any, Protocol
@@ -10,12 +11,10 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.agents.control.dual_qp import SAME, minimise
 from airhockey.errors import MissingDependencyError, unknown
 
 Array = NDArray[np.float64]
-
-SAME = 1e-12
-"""Bounds closer than this make a row an equality."""
 
 
 class QuadraticProgram(Protocol):
@@ -34,6 +33,15 @@ class QuadraticProgram(Protocol):
         Returns:
             x. Shape (n,).
         """
+
+
+class DualSolver:
+    """The package's own dual active-set method."""
+
+    def solve(self, hessian: Array, gradient: Array, rows: Array, lower: Array, upper: Array) -> Array | None:
+        """See `QuadraticProgram.solve`."""
+        x, found = minimise(hessian, gradient, rows, lower, upper)
+        return x if found else None
 
 
 class DaqpSolver:
@@ -103,11 +111,12 @@ class OsqpSolver:
         return np.asarray(result.x) if result.info.status == "solved" else None
 
 
-SOLVERS = {"daqp": DaqpSolver, "osqp": OsqpSolver}
+DEFAULT = "dual"
+SOLVERS = {"daqp": DaqpSolver, "osqp": OsqpSolver, DEFAULT: DualSolver}
 
 
-def make_solver(name: str = "daqp") -> QuadraticProgram:
-    """A solver by name, "daqp" or "osqp".
+def make_solver(name: str = DEFAULT) -> QuadraticProgram:
+    """A solver by name: "dual", "daqp" or "osqp".
 
     Raises:
         ConfigurationError: Another name.

@@ -11,11 +11,12 @@ The dual objective is piecewise linear, so its minimum lies where y is orthogona
 freedoms left: two of the iiwa's seven (21 candidates), one of the planar robot's three.
 """
 
-from functools import cache
+from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.agents.compiling import compiled
 from airhockey.agents.control.qp import QuadraticProgram
 
 Array = NDArray[np.float64]
@@ -26,6 +27,7 @@ _REACHABLE = 1.0 - 1e-6
 """Share of the largest speed asked of the QP, so that rounding does not make it infeasible."""
 
 
+@compiled
 def largest_speed(jacobian: Array, direction: Array, lower: Array, upper: Array) -> float:
     """The largest speed of the rod tip along a direction, in [m]/[s].
 
@@ -35,13 +37,18 @@ def largest_speed(jacobian: Array, direction: Array, lower: Array, upper: Array)
         lower: Least joint velocities, not above 0, in [rad]/[s]. Shape (n,).
         upper: Largest joint velocities, not below 0, in [rad]/[s]. Shape (n,).
     """
-    candidates = _candidates(jacobian)
-    along = candidates @ direction
-    usable = np.abs(along) > _FLAT * np.linalg.norm(candidates, axis=1)
-    if not usable.any():
-        return 0.0
-    support = (candidates[usable] / along[usable, None]) @ jacobian
-    return float(np.maximum(support * lower, support * upper).sum(axis=1).min())
+    m, n = jacobian.shape
+    least = np.inf
+    for i in range(n):
+        for j in range(i + 1, n if m == 3 else i + 2):  # the planar robot's y is orthogonal to column i alone
+            candidate = _orthogonal(jacobian, i, j)
+            along, length = 0.0, 0.0
+            for c in range(m):
+                along += candidate[c] * direction[c]
+                length += candidate[c] * candidate[c]
+            if abs(along) > _FLAT * sqrt(length):
+                least = min(least, _extent(jacobian, candidate, lower, upper, along))
+    return least if least < np.inf else 0.0
 
 
 def fastest_joint_velocity(
@@ -68,16 +75,24 @@ def fastest_joint_velocity(
     return (speed, velocity) if velocity is not None else (0.0, np.zeros(n))
 
 
-def _candidates(jacobian: Array) -> Array:
-    """Vectors orthogonal to one (m = 2) or to two (m = 3) columns of J. Shape (c, m)."""
+@compiled
+def _orthogonal(jacobian: Array, i: int, j: int) -> Array:
+    """A vector orthogonal to column i of J, where columns have three entries also to column j. Shape (m,)."""
     if jacobian.shape[0] == 2:
-        return np.stack([-jacobian[1], jacobian[0]], axis=1)
-    first, second = _pairs(jacobian.shape[1])
-    a, b = jacobian[:, first], jacobian[:, second]
-    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]], axis=1)
+        return np.array([-jacobian[1, i], jacobian[0, i]])
+    a0, a1, a2 = jacobian[0, i], jacobian[1, i], jacobian[2, i]
+    b0, b1, b2 = jacobian[0, j], jacobian[1, j], jacobian[2, j]
+    return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])
 
 
-@cache
-def _pairs(n: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    first, second = np.triu_indices(n, k=1)
-    return first, second
+@compiled
+def _extent(jacobian: Array, candidate: Array, lower: Array, upper: Array, along: float) -> float:
+    """The dual objective Σ_k max(lower_k a_k, upper_k a_k) of y = candidate / along."""
+    total = 0.0
+    for k in range(jacobian.shape[1]):
+        a = 0.0
+        for c in range(len(candidate)):
+            a += jacobian[c, k] * candidate[c]
+        a /= along
+        total += max(lower[k] * a, upper[k] * a)
+    return total

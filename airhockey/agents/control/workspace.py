@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.control.braking import box_speeds
 from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.parameters import control_parameters
 from airhockey.envs.specs import MALLET, TABLE
@@ -22,13 +21,11 @@ class Workspace:
     Attributes:
         lower, upper: Corners, in [m]. Shapes (2,), (2,).
         acceleration: In [m]/[s²].
-        dt: Length of a control step, in [s].
     """
 
     lower: Array
     upper: Array
     acceleration: float
-    dt: float
 
     @classmethod
     def of(cls, env_info: Mapping[str, Any]) -> "Workspace":
@@ -38,19 +35,4 @@ class Workspace:
         inset = MALLET.radius + parameters.edge_margin
         half = np.array([TABLE.length, TABLE.width]) / 2.0 - inset
         centre = np.array([-spec.base_positions[0][0], 0.0])
-        return cls(centre - half, centre + np.array([0.0, half[1]]), parameters.tip_acceleration, env_info["dt"])
-
-    def clip(self, position: Array) -> Array:
-        """The nearest position inside. Shape (2,)."""
-        return np.minimum(np.maximum(position, self.lower), self.upper)
-
-    def velocity_bounds(self, position: Array) -> Array:
-        """The velocities from which the rod tip can stop before the edges.
-
-        Args:
-            position: In the robot frame, in [m]. Shape (2,).
-
-        Returns:
-            Lower and upper, in [m]/[s]. Shape (2, 2).
-        """
-        return np.asarray(box_speeds(position, self.lower, self.upper, self.acceleration, self.dt))
+        return cls(centre - half, centre + np.array([0.0, half[1]]), parameters.tip_acceleration)

@@ -5,14 +5,23 @@ five.
 """
 
 from dataclasses import dataclass
+from math import hypot, sqrt
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import PuckMotion, puck_motion, transition
+from airhockey.agents.small_matrices import add_congruence, factor, solve_backward, solve_forward
+from airhockey.envs.kernel.memory import pack
 
 Array = NDArray[np.float64]
+
+LONGEST_LOSS = 15
+"""Steps after which a repeated observation is believed again: the puck really lies still there."""
+STILL = 0.03
+"""Below this predicted speed, in [m]/[s], zero observed velocities are no sign of a lost track."""
 
 
 @dataclass(frozen=True)
@@ -66,16 +75,33 @@ class PuckEstimate:
     @property
     def speed(self) -> float:
         """In [m]/[s]."""
-        return float(np.hypot(self.state[2], self.state[3]))
+        return hypot(self.state[2], self.state[3])
+
+
+class FilterModel(NamedTuple):
+    """What a step of the filter is computed from; see `Noise` and `PuckMotion`.
+
+    Attributes:
+        dt: Time between observations, in [s].
+        constants: `PuckMotion.constants`. Shape (8,).
+        observation: Covariance of an observation. Shape (5, 5).
+        drift, contact: Covariance that a step adds, and what it adds where a mallet may touch the puck. Shapes (5, 5).
+        e_spread, k_spread: Of restitution and slip.
+    """
+
+    dt: float
+    constants: Array
+    observation: Array
+    drift: Array
+    contact: Array
+    drift_share: float
+    surprise: float
+    e_spread: float
+    k_spread: float
 
 
 class PuckFilter:
     """Feeds on one observation per control step. `update` gives the estimate at the time of that observation."""
-
-    LONGEST_LOSS = 15
-    """Steps after which a repeated observation is believed again: the puck really lies still there."""
-    STILL = 0.03
-    """Below this predicted speed, in [m]/[s], zero observed velocities are no sign of a lost track."""
 
     def __init__(self, dt: float = 0.02, noise: Noise | None = None, motion: PuckMotion | None = None) -> None:
         """Compile, and wait for the first observation.
@@ -85,14 +111,19 @@ class PuckFilter:
             noise: What the filter assumes.
             motion: Constants of the puck's motion.
         """
-        self._dt = dt
-        self._noise = noise or Noise()
-        self._motion = motion or puck_motion()
-        self._constants = self._motion.constants
-        n = self._noise
-        self._observation_covariance = np.diag([n.position, n.position, n.velocity, n.velocity, n.yaw_rate]) ** 2
-        self._drift = np.diag([1e-5, 1e-5, n.drift_velocity, n.drift_velocity, n.drift_yaw_rate]) ** 2
-        self._contact = np.diag([1e-3, 1e-3, n.contact_velocity, n.contact_velocity, n.contact_yaw_rate]) ** 2
+        n, m = noise or Noise(), motion or puck_motion()
+        model = FilterModel(
+            dt=dt,
+            constants=m.constants,
+            observation=np.diag([n.position, n.position, n.velocity, n.velocity, n.yaw_rate]) ** 2,
+            drift=np.diag([1e-5, 1e-5, n.drift_velocity, n.drift_velocity, n.drift_yaw_rate]) ** 2,
+            contact=np.diag([1e-3, 1e-3, n.contact_velocity, n.contact_velocity, n.contact_yaw_rate]) ** 2,
+            drift_share=n.drift_share,
+            surprise=n.surprise,
+            e_spread=m.restitution_spread,
+            k_spread=m.slip_spread,
+        )
+        self._model, self._covariance = pack(model), model.observation
         self.reset()
         for k in range(3):  # compile before the game
             self.update(np.array([0.02 * k, 0.0, 0.0]), np.array([1.0, 0.0, 0.0]))
@@ -101,7 +132,6 @@ class PuckFilter:
     def reset(self) -> None:
         """Forget the puck."""
         self._last: Array | None = None
-        self._lost = 0
         self.estimate = PuckEstimate(np.zeros(5), np.eye(5), 0)
 
     def update(self, position: Array, velocity: Array, contact: bool = False) -> PuckEstimate:
@@ -115,37 +145,59 @@ class PuckFilter:
         Returns:
             The estimate now.
         """
-        seen = np.array([position[0], position[1], velocity[0], velocity[1], velocity[2]])
-        if self._last is None:
-            self._last = seen
-            self.estimate = PuckEstimate(seen, self._observation_covariance.copy(), 0)
-            return self.estimate
+        return self.take(np.array([position[0], position[1], velocity[0], velocity[1], velocity[2]]), contact)
+
+    def take(self, seen: Array, contact: bool) -> PuckEstimate:
+        """The same for an observation laid out like the state. Shape (5,)."""
         before = self.estimate
-        state, covariance = predict(
-            before.state, before.covariance, self._dt, self._constants,
-            self._contact if contact else self._drift_at(before.speed),
-            self._motion.restitution_spread, self._motion.slip_spread,
-        )  # fmt: skip
-        self._lost = self._lost + 1 if self._is_lost(seen, state) else 0
-        self._last = seen
-        if self._lost == 0 or self._lost > self.LONGEST_LOSS:
-            state, covariance = correct(
-                state, covariance, seen, self._observation_covariance, self._contact, self._noise.surprise
+        if self._last is None:
+            self.estimate = PuckEstimate(seen, self._covariance.copy(), 0)
+        else:
+            self.estimate = PuckEstimate(
+                *follow(before.state, before.covariance, before.lost, self._last, seen, contact, self._model)
             )
-        self.estimate = PuckEstimate(state, covariance, self._lost)
+        self._last = seen
         return self.estimate
 
-    def _drift_at(self, speed: float) -> Array:
-        """Covariance that one step adds at a speed. Shape (5, 5)."""
-        drift = self._drift.copy()
-        drift[2, 2] = drift[3, 3] = drift[2, 2] + (self._noise.drift_share * speed) ** 2
-        return drift
 
-    def _is_lost(self, seen: Array, predicted: Array) -> bool:
-        """A lost track shows the previous observation again, or no velocity at all where the puck should be moving."""
-        repeated = self._last is not None and bool(np.array_equal(seen, self._last))
-        moving = bool(np.hypot(predicted[2], predicted[3]) > self.STILL)
-        return repeated or (moving and not seen[2:].any())
+@compiled
+def follow(
+    state: Array, covariance: Array, lost: int, last: Array, seen: Array, contact: bool, packed: NDArray[Any]
+) -> tuple[Array, Array, int]:
+    """One step of the filter: predict, and correct by the observation unless the track is lost.
+
+    Args:
+        state, covariance, lost: The estimate before. Shapes (5,), (5, 5).
+        last, seen: The observation before, and this one. Shapes (5,).
+        contact: A mallet may be touching the puck.
+        packed: A record of a `FilterModel`.
+
+    Returns:
+        The estimate now.
+    """
+    model = packed[0]
+    drift = model.contact.copy() if contact else model.drift.copy()
+    if not contact:
+        slipping = (model.drift_share * sqrt(state[2] * state[2] + state[3] * state[3])) ** 2
+        drift[2, 2] += slipping
+        drift[3, 3] += slipping
+    state, covariance = predict(
+        state, covariance, model.dt, model.constants, drift, model.e_spread, model.k_spread
+    )  # fmt: skip
+    lost = lost + 1 if _is_lost(seen, last, state) else 0
+    if lost == 0 or lost > LONGEST_LOSS:
+        state, covariance = correct(state, covariance, seen, model.observation, model.contact, model.surprise)
+    return state, covariance, lost
+
+
+@compiled
+def _is_lost(seen: Array, last: Array, predicted: Array) -> bool:
+    """A lost track shows the previous observation again, or no velocity at all where the puck should be moving."""
+    repeated = True
+    for i in range(5):
+        repeated = repeated and seen[i] == last[i]
+    moving = predicted[2] * predicted[2] + predicted[3] * predicted[3] > STILL * STILL
+    return repeated or (moving and seen[2] == 0.0 and seen[3] == 0.0 and seen[4] == 0.0)
 
 
 @compiled
@@ -154,7 +206,8 @@ def predict(
 ) -> tuple[Array, Array]:
     """Carry mean and covariance over a duration; a bounce adds what is uncertain about it. Shapes (5,), (5, 5)."""
     after, jacobian, bounces = transition(state, duration, constants)
-    spread = jacobian @ covariance @ jacobian.T + drift
+    spread = drift.copy()
+    add_congruence(spread, jacobian, covariance)
     if bounces > 0:
         spread[0, 0] += 0.002**2
         spread[1, 1] += 0.002**2
@@ -169,13 +222,32 @@ def correct(
     state: Array, covariance: Array, seen: Array, observation_covariance: Array, contact: Array, surprise: float
 ) -> tuple[Array, Array]:
     """The Kalman update; an observation that surprises first widens the prediction. Shapes (5,), (5, 5)."""
-    innovation = seen - state
-    spread = covariance + observation_covariance
-    if innovation @ np.linalg.solve(spread, innovation) > surprise:
+    innovation, root = seen - state, covariance + observation_covariance
+    factor(root)
+    if _distance(root, innovation) > surprise:
         covariance = covariance + contact
         covariance[0, 0] += innovation[0] ** 2
         covariance[1, 1] += innovation[1] ** 2
-        spread = covariance + observation_covariance
-    gain = np.linalg.solve(spread, covariance).T
-    keep = np.eye(5) - gain
-    return state + gain @ innovation, keep @ covariance @ keep.T + gain @ observation_covariance @ gain.T
+        root = covariance + observation_covariance
+        factor(root)
+    after, gain, keep = state.copy(), covariance.copy(), np.eye(5)
+    for i in range(5):  # the gain P S⁻¹, row by row; both are symmetric
+        solve_forward(root, gain[i])
+        solve_backward(root, gain[i])
+        for j in range(5):
+            after[i] += gain[i, j] * innovation[j]
+            keep[i, j] -= gain[i, j]
+    spread = np.zeros((5, 5))  # Joseph's form: symmetric and positive whatever the rounding
+    add_congruence(spread, keep, covariance)
+    add_congruence(spread, gain, observation_covariance)
+    return after, spread
+
+
+@compiled
+def _distance(root: Array, innovation: Array) -> float:
+    """Squared Mahalanobis distance of an innovation, from Cholesky's factor of its covariance."""
+    scaled, total = innovation.copy(), 0.0
+    solve_forward(root, scaled)
+    for i in range(5):
+        total += scaled[i] * scaled[i]
+    return total

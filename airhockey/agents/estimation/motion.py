@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.compiling import compiled
+from airhockey.agents.compiling import compiled, in_place
 from airhockey.agents.parameters import load_parameters
 from airhockey.envs.specs import PUCK, TABLE
 
@@ -67,19 +67,31 @@ def puck_motion() -> PuckMotion:
     return load_parameters(PuckMotion, "bounces", Path(__file__).parent)
 
 
-@compiled
-def slide(state: Array, duration: float, constants: Array) -> None:
-    """Move a state along by a duration without bounces, in place."""
+@in_place
+def decay_over(duration: float, constants: Array) -> tuple[float, float, float]:
+    """What a duration without bounces leaves of the velocity, how far a unit of velocity goes in it [s], and what of the spin."""
     keep = exp(-constants[_DECAY] * duration)
-    travel = (1.0 - keep) / constants[_DECAY]
+    return keep, (1.0 - keep) / constants[_DECAY], exp(-constants[_SPIN_DECAY] * duration)
+
+
+@in_place
+def slide_by(state: Array, decay: tuple[float, float, float]) -> None:
+    """Move a state along without bounces, in place, over a duration of which `decay_over` is known."""
+    keep, travel, keep_spin = decay
     state[0] += state[2] * travel
     state[1] += state[3] * travel
     state[2] *= keep
     state[3] *= keep
-    state[4] *= exp(-constants[_SPIN_DECAY] * duration)
+    state[4] *= keep_spin
 
 
-@compiled
+@in_place
+def slide(state: Array, duration: float, constants: Array) -> None:
+    """Move a state along by a duration without bounces, in place."""
+    slide_by(state, decay_over(duration, constants))
+
+
+@in_place
 def bounce(state: Array, constants: Array) -> bool:
     """Reflect a state that has passed a rim, in place, except in a goal's mouth. Returns whether it bounced."""
     bounced = False
@@ -101,13 +113,25 @@ def bounce(state: Array, constants: Array) -> bool:
     return bounced
 
 
-@compiled
+@in_place
 def advance(state: Array, duration: float, constants: Array) -> int:
     """Move a state along by a duration with bounces, in place, in pieces of at most 5 ms. Returns their number."""
-    pieces = max(1, int(np.ceil(duration / 0.005 - 1e-9)))
+    pieces = pieces_of(duration)
+    return advance_by(state, pieces, decay_over(duration / pieces, constants), constants)
+
+
+@in_place
+def pieces_of(duration: float) -> int:
+    """Into how many pieces of at most 5 ms a duration is divided."""
+    return max(1, int(np.ceil(duration / 0.005 - 1e-9)))
+
+
+@in_place
+def advance_by(state: Array, pieces: int, decay: tuple[float, float, float], constants: Array) -> int:
+    """Move a state along by pieces with bounces, in place, where `decay_over` a piece is known. Returns their number."""
     bounces = 0
     for _ in range(pieces):
-        slide(state, duration / pieces, constants)
+        slide_by(state, decay)
         if bounce(state, constants):
             bounces += 1
     return bounces
@@ -127,8 +151,7 @@ def transition(state: Array, duration: float, constants: Array) -> tuple[Array, 
     Returns:
         The new state (5,), ∂new/∂old (5, 5), and how often the puck bounced.
     """
-    keep, spin = exp(-constants[_DECAY] * duration), exp(-constants[_SPIN_DECAY] * duration)
-    travel = (1.0 - keep) / constants[_DECAY]
+    keep, travel, spin = decay_over(duration, constants)
     after = state.copy()
     bounces = advance(after, duration, constants)
     jacobian = np.zeros((5, 5))

@@ -4,15 +4,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from airhockey.agents.base import AgentBase, Array
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.workspace import Workspace
-from airhockey.agents.estimation.kalman import PuckFilter
 from airhockey.agents.estimation.prediction import PuckPredictor
-from airhockey.agents.table import CONTACT, opponent_in_table, to_robot, to_table
+from airhockey.agents.estimation.watch import TableWatch
+from airhockey.agents.table import to_robot, to_table
 from airhockey.agents.thesis.defend import DefendPolicy
 from airhockey.agents.thesis.hit import HitPolicy
 from airhockey.agents.thesis.home import HomePolicy
@@ -30,8 +28,6 @@ TASKS = {
     "tournament": frozenset({Task.HIT, Task.DEFEND, Task.PREPARE}),
 }
 """What there is to do besides going home, by the last word of an environment's name."""
-_NEAR = 0.012
-"""Gap between puck and mallet, in [m], at which they may be touching within a step."""
 
 
 class ThesisAgent(AgentBase):
@@ -60,7 +56,7 @@ class ThesisAgent(AgentBase):
         self._dt = float(env_info["dt"])
         kinematics = ArmKinematics(spec_of(env_info))
         self._controller = JointController(kinematics, Workspace.of(env_info), self._dt)
-        self._filter = PuckFilter(self._dt)
+        self._watch = TableWatch(env_info)
         self._opponent = OpponentWatch(p.opponent_rate, self._dt)
         self._policies: dict[Task, Policy] = {
             Task.HOME: HomePolicy(p.home, p.hit.theta),
@@ -76,7 +72,7 @@ class ThesisAgent(AgentBase):
 
     def reset(self) -> None:
         """See `AgentBase.reset`."""
-        self._filter.reset()
+        self._watch.reset()
         self._opponent.reset()
         self._machine.reset()
         self._policies[Task.HOME].start()
@@ -97,15 +93,9 @@ class ThesisAgent(AgentBase):
 
     def _view(self, observation: Array) -> View:
         tip = to_table(self._controller.tip_position())
-        position, velocity = self.get_puck_state(observation)
-        opponent = opponent_in_table(observation, self.env_info)
+        puck, opponent = self._watch.see(observation, tip)
         self._opponent.see(opponent)
-        puck = np.array([*to_table(position), position[2]])
-        mallets = [tip] if opponent is None else [tip, opponent]
-        touching = any(np.hypot(*(puck[:2] - mallet)) < CONTACT + _NEAR for mallet in mallets)
-        return View(
-            self._filter.update(puck, velocity, touching), tip, self._controller.tip_velocity(), opponent, self._dt
-        )
+        return View(puck, tip, self._controller.tip_velocity(), opponent, self._dt)
 
     def _choose(self, view: View) -> Task:
         before = self._machine.state

@@ -12,6 +12,7 @@ velocity is left standing.
 """
 
 from dataclasses import dataclass, field
+from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,7 +83,7 @@ class DefendPolicy:
             return Move(view.tip, finished=True)
         crossing = self._predictor.at_line(puck, p.defend_line, p.horizon) if p.predict else None
         if crossing is not None and crossing.state[2] < 0:
-            remaining = crossing.time - CONTACT / max(float(np.hypot(*crossing.state[2:4])), 1e-3)
+            remaining = crossing.time - CONTACT / max(hypot(*crossing.state[2:4]), 1e-3)
             if remaining < p.ramp:
                 return self._give_way(view, crossing, remaining)
         from_top = bool(view.tip[1] > puck.position[1])

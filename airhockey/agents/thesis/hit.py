@@ -12,6 +12,7 @@ counts towards 180°: in the lower half β grows by it, in the upper half it shr
 """
 
 from dataclasses import dataclass, field
+from math import asin, cos, degrees, hypot, radians, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -148,13 +149,13 @@ class HitPolicy:
     def _aim(self, view: View) -> tuple[Array, float]:
         """Where the puck will be when it is hit, (2,), and γ, corrected for the puck's own motion across the line."""
         p = self._parameters
-        reach = float(np.hypot(*(view.puck.position - view.tip))) - CONTACT
+        reach = hypot(*(view.puck.position - view.tip)) - CONTACT
         share = min(max(reach / (p.stand_off - CONTACT), 0.0), 1.0)
-        remaining = p.strike_time * (1.0 - np.sqrt(1.0 - share))  # of a motion at constant acceleration
+        remaining = p.strike_time * (1.0 - sqrt(1.0 - share))  # of a motion at constant acceleration
         puck = view.puck.position + remaining * view.puck.velocity
-        gamma = np.radians(direction_angle(puck, OPPONENT_GOAL))
-        across = float(view.puck.velocity @ np.array([-np.sin(gamma), np.cos(gamma)]))
-        return puck, float(np.degrees(gamma - np.arcsin(np.clip(p.across * across / self._speed(puck), -0.5, 0.5))))
+        gamma = radians(direction_angle(puck, OPPONENT_GOAL))
+        across = float(view.puck.velocity[1]) * cos(gamma) - float(view.puck.velocity[0]) * sin(gamma)
+        return puck, degrees(gamma - asin(min(max(p.across * across / self._speed(puck), -0.5), 0.5)))
 
     def _speed(self, puck: Array) -> float:
         """Speed of the puck after a hit there, in [m]/[s]."""
@@ -168,7 +169,7 @@ class HitPolicy:
         here, side = polar(puck, view.tip, gamma), _side(puck)
         off = correction(here.beta, puck[1])
         turn = d_beta(p.theta, "adjustment", self._t_phase, view.dt, off)
-        turn = float(np.clip(turn, -abs(off), abs(off)))
+        turn = min(max(turn, -abs(off)), abs(off))
         self._ds = d_s(p.theta, "adjustment", self._t_phase, view.dt, self._ds, here.radius)
         stand_off = min(p.stand_off, room_behind(puck, gamma))
         radius = max(here.radius - self._ds, stand_off)
@@ -190,7 +191,7 @@ class HitPolicy:
             return True
         if not self._opponent.ready:
             return False
-        way = (OPPONENT_GOAL - puck) / np.hypot(*(OPPONENT_GOAL - puck))
+        way = (OPPONENT_GOAL - puck) / hypot(*(OPPONENT_GOAL - puck))
         across, speed = np.array([-way[1], way[0]]), self._speed(puck)
         passing = float(way @ (mallet - puck)) + np.array([-1.5, -0.75, 0.0, 0.75]) * CONTACT
         times = p.strike_time - np.log(1.0 - np.clip(_DECAY * passing / speed, 0.0, 0.95)) / _DECAY
@@ -215,16 +216,16 @@ class HitPolicy:
         p = self._parameters
         puck, gamma = self._aim(view)
         off = correction(polar(puck, view.tip, gamma).beta, puck[1])
-        turn = np.radians(_side(puck) * d_beta(p.theta, "slow-down", self._t_phase, view.dt, off))
-        rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+        turn = radians(_side(puck) * d_beta(p.theta, "slow-down", self._t_phase, view.dt, off))
+        rotation = np.array([[cos(turn), -sin(turn)], [sin(turn), cos(turn)]])
         velocity = p.slow_down * rotation @ view.tip_velocity
         target = view.tip + 0.5 * view.dt * (velocity + view.tip_velocity)
-        return Move(target, bool(np.hypot(*view.tip_velocity) < p.rest_speed), velocity)
+        return Move(target, hypot(*view.tip_velocity) < p.rest_speed, velocity)
 
 
 def room_behind(puck: Array, gamma: float) -> float:
     """Largest distance at which the mallet can stand behind the puck on the line to the goal, in [m]."""
-    direction = np.array([np.cos(np.radians(gamma)), np.sin(np.radians(gamma))])
+    direction = np.array([cos(radians(gamma)), sin(radians(gamma))])
     edge = np.array([HALF_LENGTH, HALF_WIDTH]) - MALLET.radius - _EDGE
     reach = (edge + np.sign(direction) * puck) / np.maximum(np.abs(direction), 1e-9)
     return max(float(reach.min()), CONTACT)

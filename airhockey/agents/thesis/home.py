@@ -10,6 +10,7 @@ above it clockwise (β shrinks to 0.01), always the shorter way to arrive from t
 """
 
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,8 +79,8 @@ class HomePolicy:
         near = CONTACT + self._parameters.clearance
         ahead = view.puck.position + view.dt * view.puck.velocity
         away = target - ahead
-        distance = float(np.hypot(*away))
+        distance = hypot(*away)
         if distance >= near:
             return target
         outwards = away if distance > 1e-6 else view.tip - ahead
-        return np.asarray(ahead + outwards * (near / max(float(np.hypot(*outwards)), 1e-6)))
+        return np.asarray(ahead + outwards * (near / max(hypot(*outwards), 1e-6)))

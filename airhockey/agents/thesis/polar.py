@@ -5,6 +5,7 @@ the hit (γ), the table's x axis in prepare and home.
 """
 
 from dataclasses import dataclass
+from math import atan2, cos, degrees, hypot, radians, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,19 +34,19 @@ def polar(center: Array, point: Array, gamma: float = 0.0) -> Polar:
         gamma: γ, the reference direction's own angle from the x axis, in [°].
     """
     x, y = point - center
-    return Polar(float((np.degrees(np.arctan2(y, x)) - gamma) % 360.0), float(np.hypot(x, y)))
+    return Polar((degrees(atan2(y, x)) - gamma) % 360.0, hypot(x, y))
 
 
 def cartesian(center: Array, place: Polar, gamma: float = 0.0) -> Array:
     """The point that `polar` describes. Shape (2,)."""
-    angle = np.radians(place.beta + gamma)
-    return np.asarray(center + place.radius * np.array([np.cos(angle), np.sin(angle)]))
+    angle = radians(place.beta + gamma)
+    return np.asarray(center + place.radius * np.array([cos(angle), sin(angle)]))
 
 
 def direction_angle(origin: Array, target: Array) -> float:
     """γ: the angle of the line from one point to another from the x axis, in [°], in (−180, 180]."""
     x, y = target - origin
-    return float(np.degrees(np.arctan2(y, x)))
+    return degrees(atan2(y, x))
 
 
 def wrapped(angle: float) -> float:
@@ -56,10 +57,10 @@ def wrapped(angle: float) -> float:
 def limited_step(start: Array, target: Array, longest: float) -> Array:
     """The target, or the point on the way to it that is as far as a step may be. Shape (2,)."""
     way = target - start
-    length = float(np.hypot(*way))
+    length = hypot(*way)
     return target if length <= longest else np.asarray(start + way * (longest / length))
 
 
 def stoppable_step(start: Array, target: Array, acceleration: float, dt: float) -> float:
     """The longest step, in [m], after which a motion can still stop at its target. Shapes (2,), (2,)."""
-    return float(np.sqrt(2.0 * acceleration * np.hypot(*(target - start)))) * dt
+    return sqrt(2.0 * acceleration * hypot(*(target - start))) * dt

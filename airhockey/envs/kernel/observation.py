@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs.kernel.arm import Arm
+from airhockey.envs.kernel.chain import forward_kinematics
 from airhockey.envs.kernel.compiling import compiled
 from airhockey.envs.kernel.constraints import end_effector_constraints, joint_constraints, link_constraints
 from airhockey.envs.kernel.controller import Controller
-from airhockey.envs.kernel.kinematics import WorkSpace, forward_kinematics
+from airhockey.envs.kernel.kinematics import WorkSpace
 from airhockey.envs.kernel.plant import Plant
 
 Array = NDArray[np.float64]

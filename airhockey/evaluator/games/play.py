@@ -180,18 +180,17 @@ class GamePlay:
 
     def _forfeit(self, step: int) -> bool:
         """Whether a player has failed; said once for each."""
-        told = {event.who for event in self.events if event.what == "forfeit"} if self._failed else set()
-        for competitor in self._failed:
+        failed = [competitor for competitor in self.competitors if competitor.failure is not None]
+        if not failed:
+            return False
+        told = {event.who for event in self.events if event.what == "forfeit"}
+        for competitor in failed:
             if competitor.side not in told:
                 event = Event(
                     step=step, what="forfeit", who=competitor.side, score=self._score(), why=competitor.failure
                 )
                 self.events.append(event)
-        return bool(self._failed)
-
-    @property
-    def _failed(self) -> list[Competitor]:
-        return [competitor for competitor in self.competitors if competitor.failure is not None]
+        return True
 
     def _score(self) -> tuple[int, int]:
         home, away = self.env.score

@@ -16,6 +16,7 @@ from airhockey.reporting.results import Task
 from airhockey.reporting.sections.comparison import comparison_section
 from airhockey.reporting.sections.games import PlayedGame
 from airhockey.reporting.sections.match import match_section
+from airhockey.reporting.sections.quantities import FEW
 from airhockey.reporting.sections.summary import conditions, missing, summary
 from airhockey.reporting.sections.task import task_section
 from airhockey.reporting.sections.tournament import tournament_section
@@ -133,7 +134,7 @@ def _task_parts(tasks: Sequence[Task]) -> list[Part]:
         by_env.setdefault(task.env, []).append(task)
     for env, same in by_env.items():
         if len(same) > 1:
-            parts.append(Part(f"compare-{env}", f"Comparison: {env}", comparison_section(env, same)))
+            parts.append(Part(f"compare-{env}", f"Comparison: {env}", comparison_section(env, same, len(tasks) > FEW)))
     for number, task in enumerate(tasks):
         name = task.env if len(by_env[task.env]) == 1 else f"{task.env}: {task.label}"
         parts.append(Part(f"task-{number}", name, task_section(task, f"task-{number}")))

@@ -20,6 +20,8 @@ WIDTH = 9 + 2 * N
 """Entries of one robot's row of a base observation: puck, joints, the other's tip."""
 NEWS_STEPS = 125
 """How long something stays news, in control steps."""
+LOOKED_AT = 300
+"""Latest moments among which news is looked for; no more happen while something is news."""
 
 
 @dataclass(frozen=True)
@@ -55,14 +57,9 @@ class GameNarrator:
         latest = bisect.bisect_right(self._counts, step, key=lambda count: count[0]) - 1
         _, score, faults, penalty = self._counts[latest]
         told = bisect.bisect_right(self.moments, step, key=lambda moment: moment.step)
-        news, alarm = "", ""
-        for moment in reversed(self.moments[:told]):
-            if step - moment.step >= NEWS_STEPS:
-                break
-            if moment.what == "violation":
-                alarm = alarm or moment.text
-            elif moment.what != "held":
-                news = news or moment.text
+        recent = [moment for moment in self.moments[max(0, told - LOOKED_AT) : told] if step - moment.step < NEWS_STEPS]
+        violations = [moment.text for moment in recent if moment.what == "violation"]
+        alarm, news = (violations[-1] if violations else ""), news_of(recent)
         return Caption(self.title, self.players, step * CONTROL_PERIOD, score, faults, penalty, news=news, alarm=alarm)
 
 
@@ -96,6 +93,13 @@ def game_recording(name: str, film: Array, record: GameRecord | None) -> Recordi
         name, f"{title}: {players[0]} - {players[1]}", "tournament",
         film[:, :3], film[:, 3:6], joints, narrator, tuple(moments), first_step=1,
     )  # fmt: skip
+
+
+def news_of(recent: Sequence[Moment]) -> str:
+    """What to say of what happened lately: the latest, but of a serve only where nothing led to it."""
+    said = [moment for moment in recent if moment.what not in ("violation", "held")]
+    telling = [moment for moment in said if moment.what != "serve"] or said
+    return telling[-1].text if telling else ""
 
 
 def told(event: Event, players: Sequence[str]) -> Moment:

@@ -21,7 +21,7 @@ from airhockey.evaluator.player import Player, Setting
 from airhockey.evaluator.records import Options
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.episodes import ACHIEVED
-from airhockey.viewing.games import NEWS_STEPS, told
+from airhockey.viewing.games import LOOKED_AT, NEWS_STEPS, news_of, told
 from airhockey.viewing.marks import TARGETS, Mark, path, target
 from airhockey.viewing.show import predicted_path
 from airhockey.viewing.stage import Stage
@@ -220,7 +220,7 @@ class LiveGame:
         """See `Show`."""
         game = self._game
         home, away = game.competitors
-        events = [event for event in game.events[-8:] if self.step - event.step < NEWS_STEPS and event.what != "held"]
+        recent = [told(event, self._names) for event in game.events[-LOOKED_AT:] if self.step - event.step < NEWS_STEPS]
         caption = Caption(
             f"game {self.episode}, seed {self._seed}",
             self._names,
@@ -229,7 +229,7 @@ class LiveGame:
             (game.env.faults[0], game.env.faults[1]),
             (home.penalties.points, away.penalties.points),
             phases=tuple(str(getattr(competitor.agent, "phase", "")) for competitor in game.competitors),
-            news=told(events[-1], self._names).text if events else "",
+            news=news_of(recent),
         )
         violated = [
             f"{name} violates {constraint}"

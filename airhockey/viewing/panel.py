@@ -164,8 +164,8 @@ class Panel(plugin.ViewerPlugin):
         imgui.SameLine(_WIDTH - 175.0)
         self._button("<", "previous")
         self._button(">", "next")
-        of = f" of {view.episodes}" if view.episodes is not None else ""
-        imgui.TextUnformatted(f"episode {view.episode + 1}{of}")
+        of = f" {view.episode + 1} of {view.episodes}" if view.episodes is not None else ""
+        imgui.TextUnformatted(f"episode{of}")
         if view.can_go_back:
             imgui.SetNextItemWidth(-1.0)
             changed, step = imgui.SliderInt("##step", view.step, 0, max(view.steps, 1), "step %d")

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.specs import TABLE
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.library import Entry
 from airhockey.viewing.marks import PREDICTED, Mark, path
@@ -129,7 +130,9 @@ def predicted_path(puck: Array, velocity: Array) -> list[Mark]:
 
     state = np.array([puck[0], puck[1], velocity[0], velocity[1], velocity[2]], dtype=np.float64)
     states = _predictor().path(PuckEstimate(state, np.eye(5) * 1e-9, 0), PREDICTED_SECONDS)
-    return path(np.asarray(states[::4, :2]), PREDICTED)
+    points = np.asarray(states[::4, :2])
+    gone = np.flatnonzero(np.abs(points[:, 0]) > TABLE.length / 2)  # into a goal, where it is over
+    return path(points[: gone[0] + 1] if len(gone) else points, PREDICTED)
 
 
 @cache

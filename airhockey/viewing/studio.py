@@ -1,11 +1,11 @@
 """Showing a show in MuJoCo's own viewer: in the browser, or in a window."""
 
 import contextlib
-import logging
-import queue
-import socket
+import os
 import sys
+import threading
 import time
+import webbrowser
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -16,7 +16,6 @@ from airhockey.viewing.transport import KEYS, Transport
 
 LOOPBACK = "127.0.0.1"
 _FRAME = 1 / 60  # [s]
-_STARTING = 30.0  # [s] that a viewer may take to begin
 TITLE = "airhockey"
 
 
@@ -93,83 +92,17 @@ def view_of(transport: Transport) -> Any:
 
 
 def _launch_web(show: Show, host: str, port: int, open_browser: bool) -> tuple[Any, str, Any]:
-    """The web viewer in a thread of its own; gives its handle, its address and what hears the panel."""
-    _check_address(host)
+    """The web viewer; gives its handle, its address and what hears the panel."""
     with _needs_studio():
-        from mujoco.studio import launch_thread, viewer_protocol, web_viewer
-
-        from airhockey.viewing.ears import Ears
-        from airhockey.viewing.panel import Panel
-    logging.getLogger("WebServer").setLevel(logging.WARNING)
-    web_viewer._print_url_banner = lambda *_: None  # it names addresses that are not listened on
-    ports: queue.Queue[int | BaseException] = queue.Queue()
-
-    class BoundViewer(web_viewer.WebViewer):
-        """MuJoCo's viewer, which would listen on every interface, on the one that was asked for."""
-
-        @property
-        def _host(self) -> str:
-            return host
-
-        @_host.setter
-        def _host(self, _: str) -> None:
-            """MuJoCo's choice is not taken."""
-
-    def target(endpoint: Any) -> None:
-        config = viewer_protocol.ViewerConfig(title=TITLE, gfx="web", http_port=port)
-        try:
-            viewer = BoundViewer(config, endpoint, model=show.stage.model, plugins=[Panel()])
-        except BaseException as error:
-            ports.put(error)
-            raise
-        ports.put(viewer._http_port)
-        viewer_protocol.run_viewer_loop(viewer)
-
-    ears = Ears()
-    handle = launch_thread.launch_thread(target, sim_plugins=[ears])
-    handle.model, handle.data = show.stage.model, show.stage.data
-    bound = _answer(ports)
-    if isinstance(bound, BaseException):
-        with contextlib.suppress(BaseException):
-            handle.close()
-        raise ConfigurationError(f"cannot listen on {host}:{port}: {' '.join(str(bound).split())}") from bound
-    _wait_until_it_listens(host, bound)
-    address = f"http://{f'[{host}]' if ':' in host else host}:{bound}/"
+        from airhockey.viewing.web import launch
+    handle, address, ears = launch(TITLE, show.stage.model, show.stage.data, host, port)
     if open_browser:
-        _open(address)
+        threading.Thread(target=webbrowser.open, args=(address,), kwargs={"new": 2}, daemon=True).start()
     return handle, address, ears
-
-
-def _check_address(host: str) -> None:
-    """Whether this machine has the address: MuJoCo's viewer would only say that every port of it is taken."""
-    try:
-        family, kind, _, _, address = socket.getaddrinfo(host, 0, type=socket.SOCK_STREAM)[0]
-        with socket.socket(family, kind) as trial:
-            trial.bind(address)
-    except OSError as error:
-        raise ConfigurationError(f"cannot listen on {host!r}: {error.strerror or error}") from error
-
-
-def _wait_until_it_listens(host: str, port: int) -> None:
-    """The server's thread begins a moment after its socket is bound; the address is told once it answers."""
-    until = time.monotonic() + _STARTING
-    while time.monotonic() < until:
-        with contextlib.suppress(OSError), socket.create_connection((host, port), timeout=1.0):
-            return
-        time.sleep(0.02)
-
-
-def _answer(ports: "queue.Queue[int | BaseException]") -> int | BaseException:
-    try:
-        return ports.get(timeout=_STARTING)
-    except queue.Empty:
-        return TimeoutError(f"the viewer did not start within {_STARTING:g} s")
 
 
 def _launch_window(show: Show) -> tuple[Any, str, Any]:
     """The native viewer."""
-    import os
-
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise ConfigurationError("there is no display for a window: leave out --window and watch in a browser")
     with _needs_studio():
@@ -191,10 +124,3 @@ def _needs_studio() -> Iterator[None]:
         raise MissingDependencyError(
             f"MuJoCo's viewer is not installed ({error}): pip install 'mujoco==4.0.*'"
         ) from error
-
-
-def _open(address: str) -> None:
-    import threading
-    import webbrowser
-
-    threading.Thread(target=webbrowser.open, args=(address,), kwargs={"new": 2}, daemon=True).start()

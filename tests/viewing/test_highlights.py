@@ -69,6 +69,7 @@ def test_captions_count_what_the_referee_noted() -> None:
         Event(step=0, what="serve", who="home", score=(0, 0)),
         Event(step=10, what="violation", who="away", why=why),
         Event(step=20, what="goal", who="home", score=(1, 0)),
+        Event(step=20, what="serve", who="away", score=(1, 0)),
         Event(step=200, what="fault", who="home", score=(1, 0)),
     )
     record = GameRecord(job=JOB, steps=300, home=side(1), away=side(), winner="home", events=events)

@@ -95,6 +95,8 @@ def test_the_path_of_the_puck_begins_at_it_and_stays_on_the_table() -> None:
     assert marks[0].start[:2] == pytest.approx((0.2, 0.1))
     assert np.abs(points[:, 1]).max() < 0.519
     assert predicted_path(np.zeros(3), np.zeros(3)) == []
+    into_the_goal = predicted_path(np.array([0.5, 0.0, 0.0]), np.array([3.0, 0.0, 0.0]))
+    assert into_the_goal[-1].start[0] < 0.974, "nothing is drawn behind a goal"
 
 
 @pytest.mark.parametrize("shape", [(7,), (2, 7), (3, 7), (20, 3, 7)])

@@ -58,21 +58,27 @@ def same_seeds(first: Task, second: Task) -> bool:
     return same and bool({r.index for r in first.records} & {r.index for r in second.records})
 
 
-def comparison_section(env: str, tasks: Sequence[Task]) -> Markup:
-    """Every run of a task against the first one."""
+def comparison_section(env: str, tasks: Sequence[Task], figures_too: bool = True) -> Markup:
+    """Every run of a task against the first one.
+
+    Args:
+        env: The task's environment.
+        tasks: Of the runs, at least two.
+        figures_too: Show all their figures side by side, unless the summary has done so.
+    """
     found = [compare(task, tasks[0]) for task in tasks[1:]]
     adjusted = statistics.holm([comparison.difference.p_value for comparison in found])
     several = "With several comparisons, the p-values are adjusted (Holm)." if len(found) > 1 else None
+    beside = []
+    if figures_too:
+        beside.append(("Side by side", side_by_side(f"{env}, side by side", tasks, [task.label for task in tasks])))
     return section(
         f"compare-{env}",
         f"Comparison: {env}",
         *(paragraphs([sentence(one, p)], "lead") for one, p in zip(found, adjusted, strict=True)),
         paragraphs(filter(None, [several, *_caveats(tasks)]), "note"),
         figures(_success(env, tasks), _differences(found)),
-        tables(
-            ("Side by side", side_by_side(f"{env}, side by side", tasks, [task.label for task in tasks])),
-            *(("Episode by episode", _pairs_table(one)) for one in found if one.pairs is not None),
-        ),
+        tables(*beside, *(("Episode by episode", _pairs_table(one)) for one in found if one.pairs is not None)),
     )
 
 

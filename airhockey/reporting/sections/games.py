@@ -170,7 +170,7 @@ def _shot_row(player: str, name: str, games: Sequence[PlayedGame]) -> Row:
 def _puck_map(games: Sequence[PlayedGame]) -> Markup:
     where = np.concatenate([game.film.puck for game in games if game.film is not None])
     title = "Where the puck was, over all games."
-    legend = [("d1", "seldom"), ("d5", ""), ("d10", "often")]
+    legend = [("d1", "seldom"), ("d5", "sometimes"), ("d10", "often")]
     return figure(
         "Where the puck was",
         table_map(title, cells(density_cells(where, 0.04, "looks")), left="← home", right="away →"),

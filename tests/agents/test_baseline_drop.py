@@ -18,7 +18,7 @@ DT = 0.02
 
 @pytest.fixture(scope="module")
 def rules() -> Rules:
-    workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0, 0.02)
+    workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0)
     return make_rules(smash_parameters(IIWA), workspace)._replace(turn=0.0)
 
 

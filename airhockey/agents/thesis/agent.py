@@ -17,7 +17,7 @@ from airhockey.agents.thesis.defend import DefendPolicy
 from airhockey.agents.thesis.hit import HitPolicy
 from airhockey.agents.thesis.home import HomePolicy
 from airhockey.agents.thesis.opponent import OpponentWatch
-from airhockey.agents.thesis.parameters import thesis_parameters
+from airhockey.agents.thesis.parameters import ThesisParameters, thesis_parameters
 from airhockey.agents.thesis.policy import Policy, View
 from airhockey.agents.thesis.prepare import PreparePolicy
 from airhockey.agents.thesis.state_machine import StateMachine, Task
@@ -41,7 +41,7 @@ class ThesisAgent(AgentBase):
         self,
         env_info: Mapping[str, Any],
         agent_id: int = 1,
-        parameters: str | Path = "tuned",
+        parameters: str | Path | ThesisParameters = "tuned",
         **kwargs: Any,
     ) -> None:
         """Build the player.
@@ -49,7 +49,7 @@ class ThesisAgent(AgentBase):
         Args:
             env_info: Description of the environment.
             agent_id: 1 or 2.
-            parameters: "tuned", "thesis", or the path of a YAML file.
+            parameters: "tuned", "thesis", the path of a YAML file, or the parameters themselves.
             kwargs: Ignored.
 
         Raises:

@@ -28,10 +28,12 @@ class ThesisParameters:
     opponent_rate: float
 
 
-def thesis_parameters(source: str | Path = "tuned") -> ThesisParameters:
-    """The package's `thesis` or `tuned`, or a file of the user's.
+def thesis_parameters(source: str | Path | ThesisParameters = "tuned") -> ThesisParameters:
+    """The package's `thesis` or `tuned`, a file of the user's, or what somebody else has made already.
 
     Raises:
         ConfigurationError: No such file, or one that does not fit.
     """
+    if isinstance(source, ThesisParameters):
+        return source
     return load_parameters(ThesisParameters, source, Path(__file__).parent)

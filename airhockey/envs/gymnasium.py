@@ -1,10 +1,12 @@
 """The tasks as Gymnasium environments: `airhockey/3dof-hit-v0`, `airhockey/7dof-defend-v0` and so on.
 
+    import airhockey.envs.gymnasium
     import gymnasium
 
     env = gymnasium.make("airhockey/7dof-defend-v0", disturbances="server")
 
-An entry point registers the ids whenever Gymnasium is imported; `import airhockey.envs.gymnasium` does too.
+Importing this module registers the ids (Gymnasium has no plug-ins any more); `gymnasium.make` imports it by itself where the
+id says so: "airhockey.envs.gymnasium:airhockey/7dof-defend-v0".
 """
 
 from collections.abc import Callable
@@ -82,11 +84,10 @@ class AirHockeyEnv(gymnasium.Env[Array, Array]):
     def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
         """Advance by one control step of 0.02 s."""
         env = self.environment
-        before = env.base_observation if self._reward else None
+        before = env.base_observation
         observation, _, absorbing, info = env.step(action)
         truncated = not absorbing and env.step_count >= env.horizon
         if self._reward is not None:
-            assert before is not None
             reward = float(self._reward(env, before, action, env.base_observation, absorbing))
         else:
             reward = float(info["success"]) if absorbing or truncated else 0.0

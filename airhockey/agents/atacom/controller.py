@@ -10,7 +10,7 @@ from airhockey.agents.atacom.chain import Chain, chain_of, task_coordinates
 from airhockey.agents.atacom.limits import Limits, limits_of
 from airhockey.agents.atacom.parameters import AtacomParameters, atacom_parameters
 from airhockey.agents.atacom.tangent import constraint_rows, tangent_control
-from airhockey.agents.atacom.tip import TipGains, joint_action, tip_gains
+from airhockey.agents.atacom.following import Gains, action_of_joints, action_of_tip, gains_of
 from airhockey.agents.compiling import compiled
 from airhockey.envs.specs import RobotSpec
 
@@ -40,7 +40,7 @@ class AtacomController:
         p = parameters or atacom_parameters(spec)
         self.spec, self.dt = spec, dt
         self._substeps = p.substeps
-        self._chain, self._limits, self._gains = chain_of(spec), limits_of(spec, p), tip_gains(spec, p)
+        self._chain, self._limits, self._gains = chain_of(spec), limits_of(spec, p), gains_of(spec, p)
         self.reset(np.array(spec.start))
         self.step(np.zeros(2))
         self.step(np.zeros(spec.n_joints))
@@ -61,7 +61,7 @@ class AtacomController:
         """One control step.
 
         Args:
-            action: Each entry in [−1, 1]: of the tip's velocity, shape (2,), or of the joints' accelerations, shape (n,).
+            action: Each entry in [−1, 1]: of the tip's velocity, shape (2,), or of the joints' velocities, shape (n,).
 
         Returns:
             Joint command for interpolation order 3: position [rad] and velocity [rad]/[s]. Shape (2, n).
@@ -87,7 +87,7 @@ class AtacomController:
 
 @compiled
 def integrate(
-    chain: Chain, limits: Limits, gains: TipGains, action: Array, q: Array, velocity: Array, dt: float, substeps: int
+    chain: Chain, limits: Limits, gains: Gains, action: Array, q: Array, velocity: Array, dt: float, substeps: int
 ) -> tuple[Array, Array]:
     """The command after a control step, in [rad] and [rad]/[s]. Shapes (n,), (n,)."""
     h = dt / substeps
@@ -96,9 +96,10 @@ def integrate(
         values, rows = task_coordinates(chain, q)
         ahead = task_coordinates(chain, q + _NUDGE * velocity)[1]
         drift = (ahead - rows) @ velocity / _NUDGE
-        wanted = action
         if action.size == 2:
-            wanted = joint_action(action, gains, values, rows, drift, q, velocity)
+            wanted = action_of_tip(action, gains, values, rows, drift, q, velocity)
+        else:
+            wanted = action_of_joints(action, gains, velocity)
         _, b, jacobian, a = constraint_rows(limits, values, rows, drift, q, velocity)
         acceleration = limits.acceleration * tangent_control(wanted, b, jacobian, a)
         q += h * velocity + 0.5 * h * h * acceleration

@@ -26,7 +26,8 @@ class AtacomParameters:
         contraction: λ, in [1/s].
         tip_acceleration: Largest acceleration that the tip's policy may ask for, in [m]/[s²].
         tip_speed: The tip's speed at an action of 1, in [m]/[s].
-        tip_time: Time constant with which the tip takes up the speed asked for, in [s].
+        follow_time: Time constant with which tip and joints take up the speed asked for, in [s].
+        joint_speed: A joint's speed at an action of 1, as a share of its limit: all seven together are much faster.
         height_gain: Stiffness of the pull to the desired height, in [1/s²]; critically damped.
         posture_gain: Stiffness of the null space's pull to the start posture, in [1/s²]; critically damped.
         substeps: Into which a control step is divided.
@@ -50,7 +51,8 @@ class AtacomParameters:
     contraction: float
     tip_acceleration: float
     tip_speed: float
-    tip_time: float
+    follow_time: float
+    joint_speed: float
     height_gain: float
     posture_gain: float
     substeps: int

@@ -1,8 +1,8 @@
-"""From a velocity of the rod tip to an action of the joints: the two directions in which a player thinks.
+"""What an action means: a velocity of the rod tip, the two directions in which a player thinks, or of every joint.
 
 The tip's acceleration follows the velocity asked for; the pseudo-inverse turns it into joint accelerations that keep the
 height, and the null space returns to the start posture. All of this is the policy's part: whatever comes out is projected
-onto the tangent space afterwards.
+onto the tangent space afterwards. An action of 0 comes to rest and stays.
 """
 
 from math import hypot, sqrt
@@ -22,8 +22,8 @@ _DAMPING = 1e-4
 """Added to J W⁻¹ Jᵀ, in [m²]/[s⁴]: finite near singular postures."""
 
 
-class TipGains(NamedTuple):
-    """How the tip follows.
+class Gains(NamedTuple):
+    """How tip and joints follow.
 
     Attributes:
         speed: At an action of 1, in [m]/[s].
@@ -32,6 +32,7 @@ class TipGains(NamedTuple):
         height: That the tip keeps, in [m].
         height_gain, posture_gain: Stiffnesses, in [1/s²].
         posture: That the null space returns to, in [rad]. Shape (n,).
+        joint_velocity: At an action of 1, in [rad]/[s]. Shape (n,).
         joint_acceleration: At |u| = 1, in [rad]/[s²]. Shape (n,).
     """
 
@@ -42,20 +43,29 @@ class TipGains(NamedTuple):
     height_gain: float
     posture_gain: float
     posture: Array
+    joint_velocity: Array
     joint_acceleration: Array
 
 
-def tip_gains(spec: RobotSpec, p: AtacomParameters) -> TipGains:
+def gains_of(spec: RobotSpec, p: AtacomParameters) -> Gains:
     """The gains for a robot."""
-    return TipGains(
-        p.tip_speed, p.tip_time, p.tip_acceleration, spec.desired_height, p.height_gain, p.posture_gain,
-        np.array(spec.start), p.acceleration_share * spec.joint_acceleration_limit[1],
+    return Gains(
+        p.tip_speed, p.follow_time, p.tip_acceleration, spec.desired_height, p.height_gain, p.posture_gain,
+        np.array(spec.start), p.joint_speed * spec.joint_velocity_limit[1],
+        p.acceleration_share * spec.joint_acceleration_limit[1],
     )  # fmt: skip
 
 
 @compiled
-def joint_action(
-    wanted: Array, gains: TipGains, values: Array, rows: Array, drift: Array, q: Array, velocity: Array
+def action_of_joints(wanted: Array, gains: Gains, velocity: Array) -> Array:
+    """The action that gives the joints velocities, in units of `gains.joint_velocity`. Shape (n,)."""
+    action = (gains.joint_velocity * wanted - velocity) / (gains.time * gains.joint_acceleration)
+    return np.minimum(np.maximum(action, -1.0), 1.0)
+
+
+@compiled
+def action_of_tip(
+    wanted: Array, gains: Gains, values: Array, rows: Array, drift: Array, q: Array, velocity: Array
 ) -> Array:
     """The action of the joints that gives the tip a velocity.
 
@@ -68,7 +78,6 @@ def joint_action(
     Returns:
         In units of the joints' largest accelerations, each entry within [−1, 1]. Shape (n,).
     """
-    n = q.size
     m = 3 if values.size > 2 else 2
     present = rows[:m] @ velocity
     asked = np.empty(m)
@@ -81,4 +90,5 @@ def joint_action(
     gram = scaled @ scaled.T + _DAMPING * np.eye(m)
     rest = asked - drift[:m] - rows[:m] @ free
     action = free / gains.joint_acceleration + scaled.T @ np.linalg.solve(gram, rest)
-    return action / max(1.0, np.max(np.abs(action)))
+    action /= max(1.0, np.max(np.abs(action)))
+    return action

@@ -18,7 +18,7 @@ USAGE_ERROR = 2
 class LazyGroup(click.RichGroup):
     """A group whose commands are the modules of `airhockey.commands`: a module's name is its command's, with _ for -."""
 
-    names = ("evaluate", "match", "tournament", "agents", "new", "validate", "package", "serve-agent")
+    names = ("evaluate", "match", "tournament", "train", "plot", "agents", "new", "validate", "package", "serve-agent")
 
     def list_commands(self, ctx: Any) -> list[str]:
         """The commands' names, in the order of the help page."""

@@ -204,5 +204,5 @@ def test_the_wrapper_takes_it_and_gives_the_same_numbers():
 
 
 def test_an_unknown_task_is_named():
-    with pytest.raises(ConfigurationError, match="'score'.*defend, hit, home, prepare"):
+    with pytest.raises(ConfigurationError, match=r"'score'.*defend, hit, home, prepare"):
         reward_for("score")

@@ -9,6 +9,7 @@ import numpy as np
 from airhockey.agents.base import AgentBase, Array
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
+from airhockey.agents.control.parameters import control_parameters
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.kalman import PuckFilter
 from airhockey.agents.estimation.prediction import PuckPredictor
@@ -27,6 +28,7 @@ TASKS = {
     "hit": frozenset({Task.HIT, Task.PREPARE}),
     "defend": frozenset({Task.DEFEND}),
     "prepare": frozenset({Task.PREPARE}),
+    "home": frozenset(),
     "tournament": frozenset({Task.HIT, Task.DEFEND, Task.PREPARE}),
 }
 """What there is to do besides going home, by the last word of an environment's name."""
@@ -58,8 +60,9 @@ class ThesisAgent(AgentBase):
         super().__init__(env_info, agent_id, **kwargs)
         p = thesis_parameters(parameters)
         self._dt = float(env_info["dt"])
-        kinematics = ArmKinematics(spec_of(env_info))
-        self._controller = JointController(kinematics, Workspace.of(env_info), self._dt)
+        spec = spec_of(env_info)
+        control = p.margins.within(control_parameters(spec))
+        self._controller = JointController(ArmKinematics(spec), Workspace.of(env_info), self._dt, control)
         self._filter = PuckFilter(self._dt)
         self._opponent = OpponentWatch(p.opponent_rate, self._dt)
         self._policies: dict[Task, Policy] = {

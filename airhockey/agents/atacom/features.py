@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import bounce, puck_motion, slide
-from airhockey.agents.table import HOME
+from airhockey.agents.table import CONTACT, HOME
 
 Array = NDArray[np.float64]
 Features = NDArray[np.float32]
@@ -21,7 +21,7 @@ _CONSTANTS = puck_motion().constants
 
 DEFEND_MIRROR: Features = np.array([1, -1, 1, -1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, -1], dtype=np.float32)
 """Signs of a defend observation's entries seen in a mirror along the table's middle line."""
-HOME_MIRROR: Features = np.array([1, -1, 1, -1, 1, -1, 1], dtype=np.float32)
+HOME_MIRROR: Features = np.array([1, -1, 1, -1, 1, -1, 1, 1, -1, 1, 1, -1], dtype=np.float32)
 ACTION_MIRROR: Features = np.array([1, -1], dtype=np.float32)
 
 
@@ -82,15 +82,28 @@ def defended(puck: Array, tip: Array) -> bool:
     return bool(np.hypot(puck[2], puck[3]) < SLOW or puck[2] > 0.0 or puck[0] < tip[0] - 0.02)
 
 
-def home_features(tip: Array, tip_velocity: Array) -> Features:
-    """The observation of the skill *home*: the way to it [0.5 m], its direction within 0.1 m, velocity, distance [m].
+def home_features(puck: Array, tip: Array, tip_velocity: Array) -> Features:
+    """The observation of the skill *home*: the way there, and the puck that may be in it.
+
+    | index | quantity | unit |
+    |---|---|---|
+    | 0, 1 | from tip to home | 0.5 m |
+    | 2, 3 | the same within 0.1 m | 0.1 m |
+    | 4, 5 | tip velocity | m/s |
+    | 6 | distance to home | m |
+    | 7, 8 | from tip to puck within 0.3 m | 0.15 m |
+    | 9 | gap between puck and mallet within 0.2 m | 0.1 m |
+    | 10, 11 | puck velocity | m/s |
 
     Args:
+        puck: x, y, ẋ, ẏ, yaw rate, in the table frame. Shape (5,).
         tip, tip_velocity: Of the command, in the table frame, in [m] and [m]/[s]. Shapes (2,), (2,).
 
     Returns:
-        Shape (7,).
+        Within [−5, 5]. Shape (12,).
     """
-    way = HOME - tip
-    near = np.clip(10.0 * way, -1.0, 1.0)
-    return np.array([*(2.0 * way), *near, *tip_velocity, np.hypot(*way)], dtype=np.float32)
+    way, to_puck = HOME - tip, puck[:2] - tip
+    near, beside = np.clip(10.0 * way, -1.0, 1.0), np.clip(to_puck / 0.15, -2.0, 2.0)
+    gap = min(10.0 * (float(np.hypot(*to_puck)) - CONTACT), 2.0)
+    raw = np.array([*(2.0 * way), *near, *tip_velocity, np.hypot(*way), *beside, gap, *puck[2:4]], dtype=np.float32)
+    return np.clip(raw, -5.0, 5.0)

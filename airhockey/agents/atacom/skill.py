@@ -63,7 +63,7 @@ DEFEND = Skill(
 HOME_SKILL = Skill(
     "home",
     f.HOME_MIRROR,
-    lambda s: f.home_features(s.tip, s.tip_velocity),
+    lambda s: f.home_features(s.puck, s.tip, s.tip_velocity),
     lambda s: bool(np.hypot(*(HOME - s.tip)) < ARRIVED and np.hypot(*s.tip_velocity) < 0.05),
 )
 SKILLS = {skill.name: skill for skill in (DEFEND, HOME_SKILL)}

@@ -22,9 +22,7 @@ from airhockey.agents.atacom.features import ACTION_MIRROR
 from airhockey.agents.atacom.skill import SKILLS
 from airhockey.errors import AirHockeyError
 from airhockey.learning.sac.algorithms import OAC, MirroredReplay
-from airhockey.learning.sac.judges import JUDGES
-from airhockey.learning.sac.skill_env import SkillEnv
-from airhockey.learning.sac.skill_tasks import make_task
+from airhockey.learning.sac.skill_tasks import TASKS
 
 COLUMNS = ("episode", "steps", "control_steps", "return", "success", "violations", "entropy", "steps_per_second")
 """Of the log: counts so far; mean return and share of successes of the episodes since the last line; share of control
@@ -103,7 +101,7 @@ class Trainer:
         """
         self.options, self.folder, self.progress = options, folder, Progress()
         torch.set_num_threads(1)
-        self.env = make_task(options.task, options.robot, options.disturbances)
+        self.env = TASKS[options.task](options.robot, options.disturbances)
         self._rows: list[list[float]] = []
         self.model = self._make_model()
         self._since = (0, 0)
@@ -114,12 +112,9 @@ class Trainer:
         Raises:
             Diverged: The last checkpoint is the last good one.
         """
-        try:
-            for line in self._lines():
-                if on_line is not None:
-                    on_line(line)
-        except KeyboardInterrupt:
-            raise
+        for line in self._lines():
+            if on_line is not None:
+                on_line(line)
         self.save()
 
     def _make_model(self) -> SAC:

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.atacom.chain import Chain, chain_of, task_coordinates
+from airhockey.agents.atacom.following import Gains, action_of_joints, action_of_tip, gains_of
 from airhockey.agents.atacom.limits import Limits, limits_of
 from airhockey.agents.atacom.parameters import AtacomParameters, atacom_parameters
 from airhockey.agents.atacom.tangent import constraint_rows, tangent_control
-from airhockey.agents.atacom.following import Gains, action_of_joints, action_of_tip, gains_of
 from airhockey.agents.compiling import compiled
 from airhockey.envs.specs import RobotSpec
 

@@ -39,7 +39,9 @@ class Network:
         for k, (weight, bias) in enumerate(self._layers):
             fits = weight.ndim == 2 and bias.shape == weight.shape[:1] and width in (None, weight.shape[1])
             if not fits or not (np.isfinite(weight).all() and np.isfinite(bias).all()):
-                raise ConfigurationError(f"layer {k} of shapes {weight.shape}, {bias.shape} does not fit or is not finite")
+                raise ConfigurationError(
+                    f"layer {k} of shapes {weight.shape}, {bias.shape} does not fit or is not finite"
+                )
             width = weight.shape[0]
         self.inputs, self.outputs = self._layers[0][0].shape[1], int(width or 0)
 
@@ -71,4 +73,5 @@ class Network:
         for weight, bias in self._layers[:-1]:
             x = np.maximum(weight @ x + bias, np.float32(0.0))
         weight, bias = self._layers[-1]
-        return np.tanh(weight @ x + bias)
+        action: Weights = np.tanh(weight @ x + bias)
+        return action

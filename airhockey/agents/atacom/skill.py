@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.atacom import features as f
-from airhockey.agents.table import HOME, to_table
 from airhockey.agents.atacom.controller import AtacomController
+from airhockey.agents.table import HOME, to_table
 
 Array = NDArray[np.float64]
 

@@ -57,7 +57,13 @@ def constraint_rows(
     """
     n, tasks = q.size, limits.sign.size
     count = tasks + 4 * n
-    c, psi, jacobian, softness, scale = np.empty(count), np.zeros(count), np.zeros((count, n)), np.empty(count), np.empty(count)
+    c, psi, jacobian, softness, scale = (
+        np.empty(count),
+        np.zeros(count),
+        np.zeros((count, n)),
+        np.empty(count),
+        np.empty(count),
+    )
     for i in range(tasks):
         row, sign, time = limits.coordinate[i], limits.sign[i], limits.time[i]
         speed = 0.0

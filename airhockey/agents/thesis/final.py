@@ -90,7 +90,8 @@ class FinalThesisAgent(ThesisAgent):
         robot = f"{spec.n_joints}dof"
         atacom = AtacomController(spec, self._dt)
         for task, source in ((Task.DEFEND, defend), (Task.HOME, home)):
-            if source is None and not (FOLDER / f"{task}_{robot}.npz").exists(): continue
+            if source is None and not (FOLDER / f"{task}_{robot}.npz").exists():
+                continue
             learned = LearnedSkill(SKILLS[task], trained(task, robot, source), atacom)
             self._policies[task] = SkillPolicy(task, learned, self._controller)
         self.reset()

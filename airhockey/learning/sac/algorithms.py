@@ -8,7 +8,8 @@ from stable_baselines3 import SAC
 from stable_baselines3.common.buffers import ReplayBuffer
 from stable_baselines3.common.type_aliases import ReplayBufferSamples
 
-Tensor = torch.Tensor
+Tensor = Any
+"""A torch.Tensor; torch brings no types that mypy may look at here."""
 
 
 class MirroredReplay(ReplayBuffer):

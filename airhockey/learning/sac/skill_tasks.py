@@ -22,7 +22,9 @@ class DefendEnv(SkillEnv):
     NEARNESS, CALM, DISCOUNT = 4.0, 2.0, 0.98
 
     def __init__(self, robot: str, disturbances: Any = "ideal") -> None:
-        super().__init__(AirHockeyEnv(f"{robot}-defend", disturbances=disturbances, reward=reward_for("defend")), DEFEND)
+        super().__init__(
+            AirHockeyEnv(f"{robot}-defend", disturbances=disturbances, reward=reward_for("defend")), DEFEND
+        )
         self._constants = puck_motion().constants
 
     def shaping(self, before: Situation, after: Situation) -> float:

@@ -56,8 +56,8 @@ class Pgpe:
         natural: Use the natural gradient.
         baseline: "none", the "mean" of the iteration, the "moving" average of the thesis, or the "optimal" one for
             each parameter that makes the estimate's variance least (as in MushroomRL).
-        normalize: Divide J − b by the standard deviation of J among the N, so that rewards of any size fit one
-            learning rate.
+        normalize: Divide J − b by its root mean square among the N, so that rewards of any size fit one learning
+            rate.
         symmetric: Sample in pairs.
         sigma_share: Learning rate of log σ, as a share of that of μ.
     """
@@ -107,11 +107,18 @@ class Pgpe:
         Returns:
             Shapes (d,), (d,).
         """
-        scale = float(values.std()) if self.normalize else 1.0
-        if scale == 0.0:  # all are equally good: nothing to learn
+        scale = self._scale(values)
+        if scale == 0.0:  # all are as good as expected: nothing to learn
             return np.zeros_like(self.mean), np.zeros_like(self.mean)
         for_mean, for_log_sigma = (self._estimate(score, values) / scale for score in self.policy.scores(theta))
         return for_mean, for_log_sigma
+
+    def _scale(self, values: Array) -> float:
+        """Root mean square of J − b with one b for all: a baseline far off must not make for a long step."""
+        if not self.normalize:
+            return 1.0
+        baseline = float(values.mean()) if self.baseline == "optimal" else self._scalar_baseline(values)
+        return float(np.sqrt(np.mean((values - baseline) ** 2)))
 
     def _estimate(self, scores: Array, values: Array) -> Array:
         """1/N Σ (J − b) ∇log ν for one half of ρ. Shape (d,)."""
@@ -123,6 +130,9 @@ class Pgpe:
             squares = scores**2
             total = squares.sum(axis=0)
             return np.where(total > 0.0, values @ squares / np.where(total > 0.0, total, 1.0), 0.0)
+        return self._scalar_baseline(values)
+
+    def _scalar_baseline(self, values: Array) -> float:
         if self.baseline == "mean" or (self.baseline == "moving" and self.moving is None):
             return float(values.mean())
         return float(self.moving or 0.0) if self.baseline == "moving" else 0.0

@@ -65,14 +65,14 @@ def names_of(task: str, asked: Sequence[str] = (), fixed: Sequence[str] = (), on
         if not any(name.startswith(start) for name in ranges()):
             raise unknown("trainable parameter", start, ranges())
     if only is not None:
-        return [_resolve(only, names)]
-    left = [name for name in names if name not in {_resolve(one, names) for one in fixed}]
+        return [resolve(only, names)]
+    left = [name for name in names if name not in {resolve(one, names) for one in fixed}]
     if not left:
         raise ConfigurationError(f"every parameter is fixed, nothing is left to train; there are {', '.join(names)}")
     return left
 
 
-def _resolve(given: str, names: Sequence[str]) -> str:
+def resolve(given: str, names: Sequence[str]) -> str:
     """The name of a parameter given by its name or by its index among those trained."""
     if given in names:
         return given

@@ -1,9 +1,9 @@
 """A game of two as a PettingZoo environment: `airhockey/tournament-v0`, a parallel one.
 
-    import airhockey.envs.pettingzoo
-    import pettingzoo
+import airhockey.envs.pettingzoo
+import pettingzoo
 
-    game = pettingzoo.make("parallel", "airhockey/tournament-v0", disturbances="server")
+game = pettingzoo.make("parallel", "airhockey/tournament-v0", disturbances="server")
 """
 
 from typing import Any
@@ -85,9 +85,7 @@ class TournamentEnv(pettingzoo.ParallelEnv[str, Array, Array]):
 
     def step(
         self, actions: dict[str, Array]
-    ) -> tuple[
-        dict[str, Array], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]
-    ]:
+    ) -> tuple[dict[str, Array], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
         """Advance by one control step of 0.02 s; a serve that ended is followed by the next one at once."""
         env = self.environment
         observation, _, over, info = env.step((actions["home"], actions["away"]))

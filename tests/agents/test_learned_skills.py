@@ -24,6 +24,7 @@ from airhockey.agents.atacom.learned import FOLDER, LearnedSkill, trained
 from airhockey.agents.atacom.network import Network
 from airhockey.agents.atacom.skill import DEFEND, HOME_SKILL, REPEAT, Situation
 from airhockey.agents.estimation.motion import advance, puck_motion
+from airhockey.agents.table import to_table
 from airhockey.envs.specs import IIWA
 from airhockey.errors import ConfigurationError
 
@@ -93,7 +94,9 @@ def test_features_in_a_mirror():
     puck, tip, velocity = np.array([0.2, 0.1, -1.5, 0.4, 3.0]), np.array([-0.8, 0.05]), np.array([0.2, -0.1])
     there, back = np.array([1.0, -1.0, 1.0, -1.0, -1.0]), ACTION_MIRROR
     seen = defend_features(puck, tip, velocity)
-    np.testing.assert_allclose(defend_features(there * puck, back * tip, back * velocity), DEFEND_MIRROR * seen, atol=1e-6)
+    np.testing.assert_allclose(
+        defend_features(there * puck, back * tip, back * velocity), DEFEND_MIRROR * seen, atol=1e-6
+    )
     seen = home_features(puck, tip, velocity)
     np.testing.assert_allclose(home_features(there * puck, back * tip, back * velocity), HOME_MIRROR * seen, atol=1e-6)
 
@@ -190,7 +193,7 @@ def test_the_way_home_is_learned_and_arrives():
                 controller.step(action)
         learned.start()
         for _ in range(150):
-            learned.step(Situation(puck, controller.tip + [-1.51, 0.0], controller.tip_velocity))
+            learned.step(Situation(puck, to_table(controller.tip), controller.tip_velocity))
         arrived += learned.resting
     assert arrived >= 9
 

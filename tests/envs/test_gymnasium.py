@@ -118,4 +118,3 @@ def test_a_game_goes_on_with_the_next_serve_and_ends_by_truncation():
     assert len(serves) == 760
     assert game.agents == []
     assert infos["home"]["faults"] + infos["away"]["faults"] == 1
-

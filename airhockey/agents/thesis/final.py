@@ -5,12 +5,13 @@ from pathlib import Path
 from typing import Any
 
 from airhockey.agents.atacom.controller import AtacomController
+from airhockey.agents.atacom.features import SLOW
 from airhockey.agents.atacom.learned import FOLDER, LearnedSkill, trained
 from airhockey.agents.atacom.skill import SKILLS, Situation
 from airhockey.agents.base import Array
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import spec_of
-from airhockey.agents.table import to_robot
+from airhockey.agents.table import CONTACT, to_robot
 from airhockey.agents.thesis.agent import ThesisAgent
 from airhockey.agents.thesis.policy import Move, View
 from airhockey.agents.thesis.state_machine import Task
@@ -49,10 +50,17 @@ class SkillPolicy:
         """See `Policy.step`."""
         state, atacom = self._commands.state, self._learned.controller
         atacom.reset(state.position, state.velocity)
+        if self._learned.resting and self._comes_again(view):
+            self._learned.start()
         self.command = self._learned.step(Situation(view.puck.state, view.tip, view.tip_velocity))
         self._commands.reset(*self.command)
         self.phase = "rest" if self._learned.resting else "learned"
         return Move(view.tip, finished=self._learned.resting and self._over(view))
+
+    def _comes_again(self, view: View) -> bool:
+        """Whether a puck that was defended has bounced off something, and is on its way to the own goal once more."""
+        coming = view.puck.velocity[0] < -SLOW and view.puck.position[0] - view.tip[0] > CONTACT
+        return self._task is Task.DEFEND and bool(coming)
 
     def _over(self, view: View) -> bool:
         """Whether the next task may begin: after a defence only when the puck is out of the way."""

@@ -21,7 +21,7 @@ from airhockey.commands._options import typed_options
 @click.option("--jobs", type=click.IntRange(min=1), help="Processes that play.  [default: one per CPU]")
 @click.pass_context
 def plot(ctx: click.RichContext, /, run: str, **given: Any) -> None:
-    """Draw a run of `hockey train pgpe`: learning curve, μ and σ of every θ, histogram of the updates.
+    """Draw a training run: learning curve, μ and σ of every θ, histogram of the updates; of `train sac` its log.
 
     A sweep plays new episodes with one θ at values over its range and the others as they were trained.
 
@@ -31,6 +31,7 @@ def plot(ctx: click.RichContext, /, run: str, **given: Any) -> None:
     hockey plot runs/pgpe-3dof-hit-s0
     hockey plot runs/pgpe-3dof-hit-s0 --format svg --out figures
     hockey plot runs/pgpe-3dof-hit-s0 --sweep hit.theta.2 --points 11
+    hockey plot runs/sac-7dof-defend-s0
     """
     typed_options(ctx, given)
     from airhockey.commands._plotting import run as draw

@@ -22,6 +22,10 @@ def test_a_run_says_what_it_reached(hockey: Hockey) -> None:
     assert card["settings"]["steps"] == 260
     assert card["figures"]["actions"] >= 260
     assert Path("run/network.npz").stat().st_size < 500_000
+    status, out, _ = hockey("plot run")
+    assert status == 0 and Path(out.strip()).read_bytes().startswith(b"\x89PNG")
+    status, _, err = hockey("plot run --sweep 0")
+    assert status == 2 and "no θ" in err
     status, _, err = hockey(f"{SHORT} --steps 260 --out run")
     assert status == 2 and "not empty" in err
     status, _, err = hockey("train sac --resume --seed 1 --out run")

@@ -23,9 +23,10 @@ from airhockey import envs
 from airhockey.agents.atacom.network import Network
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.disk import begin_folder, disk_errors, lock_folder, replace_file
+from airhockey.learning.sac.plots import LOG
 from airhockey.learning.sac.records import Line, Manifest, Settings
 
-MANIFEST, LOG, CHECKPOINT, NETWORK, CARD = "train.json", "log.csv", "checkpoint.pkl", "network.npz", "card.yaml"
+MANIFEST, CHECKPOINT, NETWORK, CARD = "train.json", "checkpoint.pkl", "network.npz", "card.yaml"
 
 
 class SkillFolder:

@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.errors import ConfigurationError, MissingDependencyError
-from airhockey.learning.sac.folder import LOG
 
 Array = NDArray[np.float64]
 
+LOG = "log.csv"
+"""In a run's folder."""
 PANELS = (
     ("mean_return", "return", 1.0),
     ("success", "success [%]", 100.0),
@@ -34,7 +35,9 @@ def plot_training(run: Path, out: Path, form: str = "png") -> Path:
     try:
         from matplotlib.figure import Figure
     except ImportError as error:
-        raise MissingDependencyError("plots need matplotlib; install it with: pip install matplotlib") from error
+        raise MissingDependencyError(
+            "plots need the package matplotlib; install it with: pip install 'airhockey[learn]'"
+        ) from error
     log = read_log(run)
     figure = Figure(figsize=(9.0, 2.6), layout="constrained")
     for axes, (column, label, factor) in zip(figure.subplots(1, len(PANELS)), PANELS, strict=True):

@@ -135,6 +135,8 @@ def test_only_the_number_of_iterations_may_change(tmp_path):
         ({"candidates": 1}, "at least 2"),
         ({"learning_rate": -1.0}, "learning rate"),
         ({"max_penalty": -0.1}, "budget"),
+        ({"max_penalty": float("nan")}, "budget"),
+        ({"multiplier_rate": -1.0}, "multiplier rate"),
         ({"mean": (0.9, 0.01)}, "hit.theta.0 starts at 0.9"),
     ],
 )

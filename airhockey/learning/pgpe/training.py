@@ -64,8 +64,13 @@ def check(settings: Settings) -> None:
         raise ConfigurationError(f"--candidates must be at least 2 to compare, not {settings.candidates}")
     if not settings.learning_rate > 0.0:
         raise ConfigurationError(f"the learning rate must be positive, not {settings.learning_rate:g}")
-    if settings.max_penalty is not None and settings.max_penalty < 0.0:
-        raise ConfigurationError(f"the penalty budget must not be negative, as {settings.max_penalty:g} is")
+    if settings.max_penalty is not None and not settings.max_penalty >= 0.0:
+        raise ConfigurationError(
+            f"the penalty budget must be 0 or more points per episode, not {settings.max_penalty:g}"
+        )
+    for name in ("multiplier_rate", "sigma_share"):
+        if not getattr(settings, name) >= 0.0:
+            raise ConfigurationError(f"the {name.replace('_', ' ')} must be 0 or more, not {getattr(settings, name):g}")
     lower, upper = bounds(settings.names)
     for name, value, low, high in zip(settings.names, settings.mean, lower, upper, strict=True):
         if not low <= value <= high:

@@ -27,6 +27,8 @@ class LazyGroup(click.RichGroup):
         "video",
         "report",
         "leaderboard",
+        "train",
+        "plot",
         "agents",
         "new",
         "validate",

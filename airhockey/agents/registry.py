@@ -55,6 +55,12 @@ AGENTS: dict[str, AgentEntry] = {
             "airhockey.agents.thesis.agent:ThesisAgent",
         ),
         AgentEntry(
+            "thesis-final",
+            "the thesis's last player: hit and prepare by rules, defend and home learned (SAC on ATACOM)",
+            EVERY_ENVIRONMENT,
+            "airhockey.agents.thesis.final:FinalThesisAgent",
+        ),
+        AgentEntry(
             "baseline",
             "planning: predicts the puck and chooses among smash, defend, repel, prepare and ready",
             EVERY_ENVIRONMENT,

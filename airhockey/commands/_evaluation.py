@@ -87,6 +87,7 @@ def _options(given: Mapping[str, Any]) -> Options:
         clock=given["clock"],
         isolate=isolation_of(agent, given["isolate"]),
         patience=given["patience"],
+        parameters=None if given["parameters"] is None else from_anywhere(given["parameters"], ()),
     )
 
 

@@ -27,6 +27,11 @@ from airhockey.commands._options import cluster_option, typed_options
     show_default=True,
     help="One of `hockey agents`, the folder or archive of a submission, or tcp://HOST:PORT.",
 )
+@click.option(
+    "--parameters",
+    metavar="NAME|FILE",
+    help="Parameters of the rule-based player: tuned, thesis, or a YAML file, as `hockey train pgpe` leaves it.",
+)
 @click.option("--episodes", type=click.IntRange(min=1), default=1000, show_default=True, help="Episodes of each task.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the whole run.")
 @click.option("--jobs", type=click.IntRange(min=1), help="Processes that play.  [default: one per CPU]")

@@ -55,6 +55,7 @@ class Environment:
         dt: Length of a control step, in [s].
         n_agents: Number of robots in the scene.
         n_players: Number of robots that take actions.
+        succeeded: Whether the task would count as a success if it ended after the latest step.
     """
 
     dt = CONTROL_PERIOD
@@ -160,7 +161,7 @@ class Environment:
             self._restore(np.asarray(state, dtype=np.float64))
         for perception, random in zip(self._perceptions, self._perception_randoms, strict=True):
             perception.reset(random)
-        self.step_count, self.verdict = 0, referee.GOING_ON
+        self.step_count, self.verdict, self.succeeded = 0, referee.GOING_ON, False
         return self._observe()
 
     def step(self, action: Any) -> tuple[Array, float, bool, dict[str, Any]]:
@@ -181,8 +182,8 @@ class Environment:
             shape = (SUBSTEPS, *self._no_noise.shape[1:])
             noise = self._plant_random.standard_normal(shape) * self._torque_deviation
         verdict = self.simulation.step(self._action, noise, self.step_count)
-        self.verdict = verdict & ~SUCCESS
-        return self._observe(), 0.0, self.verdict != referee.GOING_ON, self._info(verdict)
+        self.verdict, self.succeeded = verdict & ~SUCCESS, verdict >= SUCCESS
+        return self._observe(), 0.0, self.verdict != referee.GOING_ON, self._info()
 
     def new_game(self) -> None:
         """Score and faults to zero, and a new draw of the side that serves first."""
@@ -257,12 +258,12 @@ class Environment:
         true = self.simulation.readings.observation
         return np.concatenate([see.observe(row) for see, row in zip(self._perceptions, true, strict=False)])
 
-    def _info(self, verdict: int) -> dict[str, Any]:
+    def _info(self) -> dict[str, Any]:
         flat = self.simulation.flat
         by_name = [{name: flat[part] for name, part in parts.items()} for parts in self._constraints]
         if self.n_players == 2:
             return {"constraints_value": by_name, "jerk": flat[self._jerk], "score": self.score, "faults": self.faults}
-        return {"constraints_value": by_name[0], "jerk": flat[self._jerk], "success": int(verdict >= SUCCESS)}
+        return {"constraints_value": by_name[0], "jerk": flat[self._jerk], "success": int(self.succeeded)}
 
 
 def _child(sequence: np.random.SeedSequence, index: int) -> np.random.SeedSequence:

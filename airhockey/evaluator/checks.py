@@ -6,6 +6,7 @@ from pathlib import Path
 from airhockey import envs
 from airhockey.agents import AGENTS
 from airhockey.agents.submission import is_submission, submission_config
+from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.envs.editions import Edition, edition
 from airhockey.errors import ConfigurationError, unknown
@@ -14,6 +15,7 @@ from airhockey.evaluator.games.records import VARIANTS, GameOptions
 from airhockey.evaluator.isolation.modes import REMOTE, choose, host_and_port
 from airhockey.evaluator.records import Options
 
+RULE_BASED = ("thesis", "thesis-final")  # agents whose numbers are in a file
 ORDERS = (1, 2, 3, 4, 5, -1, "none", "agent")
 
 
@@ -37,9 +39,21 @@ def check_options(options: Options) -> None:
         _check_environment(name, rules)
     load_disturbances(options.disturbances)
     check_agent(options.agent, options.environments)
+    _check_parameters(options)
     choose(options.agent, options.isolate)
     if options.patience <= 0.0:
         raise ConfigurationError(f"the patience must be positive, not {options.patience:g} s")
+
+
+def _check_parameters(options: Options) -> None:
+    """Only the rule-based players read a parameter file, and it must be one."""
+    if options.parameters is None:
+        return
+    if options.agent not in RULE_BASED:
+        raise ConfigurationError(
+            f"agent {options.agent!r} reads no parameter file; those that do: {', '.join(RULE_BASED)}"
+        )
+    thesis_parameters(options.parameters)
 
 
 def check_seed(seed: int) -> None:

@@ -4,13 +4,16 @@
         ...
 
 `function` and the jobs are picklable. The function may keep what it built between jobs; its `close()`, if it has one, is
-called when there are no more. Results come as they are ready. A job whose worker dies, again and again, gives a `Lost`.
+called when there are no more. Results come as they are ready. A shift keeps the function, and the workers, for several
+runs. A job whose worker dies, again and again, gives a `Lost`.
 """
 
-from collections.abc import Callable, Generator, Iterable
+import abc
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from multiprocessing import connection
-from typing import Any, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from airhockey.errors import AirHockeyError
 from airhockey.evaluator.workers import Task, Worker, close
@@ -40,6 +43,14 @@ class Engine(Protocol):
         ...
 
 
+class Shift(AbstractContextManager["Shift[Job, Result]"], Generic[Job, Result]):
+    """Several runs of one function after another, which keeps what it built and where it runs until the shift ends."""
+
+    @abc.abstractmethod
+    def run(self, jobs: Iterable[Job]) -> Generator[tuple[Job, Result | Lost], None, None]:
+        """Yield each job with its result, in any order; raises what the function raises."""
+
+
 class InProcess:
     """One job after the other, right here."""
 
@@ -47,11 +58,24 @@ class InProcess:
         self, function: Callable[[Job], Result], jobs: Iterable[Job]
     ) -> Generator[tuple[Job, Result | Lost], None, None]:
         """Yield each job with its result, in order; raises what the function raises."""
-        try:
-            for job in jobs:
-                yield job, function(job)
-        finally:
-            close(function)
+        with self.shift(function) as shift:
+            yield from shift.run(jobs)
+
+    def shift(self, function: Callable[[Job], Result]) -> Shift[Job, Result]:
+        """Begin a shift."""
+        return _Here(function)
+
+
+@dataclass
+class _Here(Shift[Job, Result]):
+    function: Callable[[Job], Result]
+
+    def run(self, jobs: Iterable[Job]) -> Generator[tuple[Job, Result | Lost], None, None]:
+        for job in jobs:
+            yield job, self.function(job)
+
+    def __exit__(self, *_: object) -> None:
+        close(self.function)
 
 
 @dataclass(frozen=True)
@@ -72,31 +96,37 @@ class Processes:
         self, function: Callable[[Job], Result], jobs: Iterable[Job]
     ) -> Generator[tuple[Job, Result | Lost], None, None]:
         """Yield each job with its result, as they are ready; raises what the function raises."""
-        crew = _Crew(self, function, jobs)
-        try:
-            while crew.staff():
-                for pipe in connection.wait(list(crew.busy)):
-                    yield from crew.listen(pipe)
-            for worker in crew.idle:
-                worker.finish()
-        finally:
-            for worker in (*crew.busy.values(), *crew.idle):
-                worker.kill()
+        with self.shift(function) as shift:
+            yield from shift.run(jobs)
+
+    def shift(self, function: Callable[[Job], Result]) -> Shift[Job, Result]:
+        """Begin a shift."""
+        return _Crew(self, function)
 
 
 @dataclass
-class _Crew:
-    """The workers of one run, and the tasks that wait for them."""
+class _Crew(Shift[Any, Any]):
+    """The workers of one shift, and the tasks that wait for them."""
 
     engine: Processes
     function: Callable[[Any], Any]
-    jobs: Iterable[Any]
     busy: dict[Any, Worker] = field(default_factory=dict)
     idle: list[Worker] = field(default_factory=list)
 
-    def __post_init__(self) -> None:
-        self._fresh = iter(self.jobs)
+    def run(self, jobs: Iterable[Any]) -> Generator[tuple[Any, Any], None, None]:
+        self._fresh: Iterator[Any] = iter(jobs)
         self._retries: list[Task] = []
+        while self.staff():
+            for pipe in connection.wait(list(self.busy)):
+                yield from self.listen(pipe)
+
+    def __exit__(self, failure: type[BaseException] | None, *_: object) -> None:
+        try:
+            for worker in self.idle if failure is None else ():
+                worker.finish()
+        finally:
+            for worker in (*self.busy.values(), *self.idle):
+                worker.kill()
 
     def next_task(self) -> Task | None:
         """The next task, those to be tried again first."""
@@ -142,6 +172,6 @@ class _Crew:
             yield worker.task.job, Lost(f"the worker process died {worker.task.attempt} times over it ({reason})")
 
 
-def engine_for(jobs: int) -> Engine:
+def engine_for(jobs: int) -> InProcess | Processes:
     """The engine for a number of parallel jobs."""
     return InProcess() if jobs == 1 else Processes(jobs)

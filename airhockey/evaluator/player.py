@@ -120,6 +120,8 @@ class Player:
         # Our own agents can play any order; a submission's order is a matter of its agent_config.yml.
         told = options.interpolation_order != "agent" and options.agent in AGENTS
         kwargs: dict[str, Any] = {"interpolation_order": order} if told else {}
+        if options.parameters is not None:
+            kwargs["parameters"] = options.parameters
         seed = seeding.seed_of(options.seed, env_name, 0, seeding.AGENT_BUILD)
         seeding.seed_global_generators(seed)
         try:

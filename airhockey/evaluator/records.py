@@ -29,6 +29,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
         edition: Rule edition.
         isolate: Where the agent lives: with the evaluator, in a process of its own, or in a sandbox.
         patience: Longest time for an answer of an agent that lives elsewhere, in [s].
+        parameters: Of the rule-based player: a name that it knows or the absolute path of a YAML file; None for its own.
     """
 
     environments: tuple[str, ...]
@@ -41,6 +42,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     edition: str = "2023"
     isolate: Literal["none", "process", "sandbox"] = "none"
     patience: float = 60.0
+    parameters: str | None = None
 
 
 class Manifest(msgspec.Struct, frozen=True, kw_only=True):

@@ -7,6 +7,7 @@ from typing import Any
 from airhockey.agents.base import AgentBase, Array
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
+from airhockey.agents.control.parameters import control_parameters
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.prediction import PuckPredictor
 from airhockey.agents.estimation.watch import TableWatch
@@ -15,7 +16,7 @@ from airhockey.agents.thesis.defend import DefendPolicy
 from airhockey.agents.thesis.hit import HitPolicy
 from airhockey.agents.thesis.home import HomePolicy
 from airhockey.agents.thesis.opponent import OpponentWatch
-from airhockey.agents.thesis.parameters import thesis_parameters
+from airhockey.agents.thesis.parameters import ThesisParameters, thesis_parameters
 from airhockey.agents.thesis.policy import Policy, View
 from airhockey.agents.thesis.prepare import PreparePolicy
 from airhockey.agents.thesis.state_machine import StateMachine, Task
@@ -25,6 +26,7 @@ TASKS = {
     "hit": frozenset({Task.HIT, Task.PREPARE}),
     "defend": frozenset({Task.DEFEND}),
     "prepare": frozenset({Task.PREPARE}),
+    "home": frozenset(),
     "tournament": frozenset({Task.HIT, Task.DEFEND, Task.PREPARE}),
 }
 """What there is to do besides going home, by the last word of an environment's name."""
@@ -37,7 +39,7 @@ class ThesisAgent(AgentBase):
         self,
         env_info: Mapping[str, Any],
         agent_id: int = 1,
-        parameters: str | Path = "tuned",
+        parameters: str | Path | ThesisParameters = "tuned",
         **kwargs: Any,
     ) -> None:
         """Build the player.
@@ -45,7 +47,7 @@ class ThesisAgent(AgentBase):
         Args:
             env_info: Description of the environment.
             agent_id: 1 or 2.
-            parameters: "tuned", "thesis", or the path of a YAML file.
+            parameters: "tuned", "thesis", the path of a YAML file, or the parameters themselves.
             kwargs: Ignored.
 
         Raises:
@@ -54,8 +56,9 @@ class ThesisAgent(AgentBase):
         super().__init__(env_info, agent_id, **kwargs)
         p = thesis_parameters(parameters)
         self._dt = float(env_info["dt"])
-        kinematics = ArmKinematics(spec_of(env_info))
-        self._controller = JointController(kinematics, Workspace.of(env_info), self._dt)
+        spec = spec_of(env_info)
+        control = p.margins.within(control_parameters(spec))
+        self._controller = JointController(ArmKinematics(spec), Workspace.of(env_info), self._dt, control)
         self._watch = TableWatch(env_info)
         self._opponent = OpponentWatch(p.opponent_rate, self._dt)
         self._policies: dict[Task, Policy] = {

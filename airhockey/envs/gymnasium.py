@@ -1,0 +1,105 @@
+"""The tasks as Gymnasium environments: `airhockey/3dof-hit-v0`, `airhockey/7dof-defend-v0` and so on.
+
+    import airhockey.envs.gymnasium
+    import gymnasium
+
+    env = gymnasium.make("airhockey/7dof-defend-v0", disturbances="server")
+
+Importing this module registers the ids (Gymnasium has no plug-ins any more); `gymnasium.make` imports it by itself where the
+id says so: "airhockey.envs.gymnasium:airhockey/7dof-defend-v0".
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from airhockey.errors import MissingDependencyError
+
+try:
+    import gymnasium
+    from gymnasium import spaces
+except ImportError as error:
+    raise MissingDependencyError(
+        f"this interface needs Gymnasium, which cannot be imported ({error}); install it with: pip install 'airhockey[rl]'"
+    ) from error
+
+from airhockey.envs.environment import Environment, Order
+
+Array = NDArray[np.float64]
+Reward = Callable[[Any, Array, Any, Array, bool], float]
+
+NAMESPACE = "airhockey"
+TASKS = ("3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare")
+
+
+class AirHockeyEnv(gymnasium.Env[Array, Array]):
+    """One of the challenge's tasks; `airhockey.envs.Environment` says what an observation and an action are.
+
+    An observation's space is unbounded: joints overshoot and noise reaches beyond any limit. `info` holds `success`,
+    `constraints_value` and `jerk`. An episode is truncated at the task's horizon.
+
+    Args:
+        name: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend" or "7dof-prepare".
+        interpolation_order: 1, 2, 3, 4, 5, -1 or None.
+        disturbances: A profile's name, the path of a YAML file, or a profile.
+        reward: Called with (environment, state, action, next state, absorbing) after each step; the states are base
+            observations in world coordinates, as for the official wrapper's `custom_reward_function`. Without one the
+            reward is `success` at the end of an episode and 0 before.
+
+    Attributes:
+        environment: The challenge environment behind it.
+    """
+
+    metadata = {"render_modes": []}  # noqa: RUF012 - Gymnasium's own way to say so
+
+    def __init__(
+        self,
+        name: str,
+        interpolation_order: Order = 3,
+        disturbances: Any = "ideal",
+        reward: Reward | None = None,
+    ) -> None:
+        self.environment = Environment(name, interpolation_order, disturbances)
+        box = self.environment.env_info["rl_info"]
+        self.observation_space = spaces.Box(-np.inf, np.inf, box.observation_space.shape, np.float64)
+        self.action_space = spaces.Box(box.action_space.low, box.action_space.high, dtype=np.float64)
+        self._reward = reward
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:
+        """Begin an episode.
+
+        Args:
+            seed: Decides the start and every disturbance; an integer s gives the official start of `np.random.seed(s)`.
+            options: "state": a base observation to start from; "seed": a `numpy.random.SeedSequence` instead of `seed`.
+        """
+        super().reset(seed=seed)
+        given = options or {}
+        start = given.get("seed", seed)
+        if start is not None and not isinstance(start, np.random.SeedSequence):
+            start = int(start) % 2**32
+        return self.environment.reset(start, given.get("state")), {}
+
+    def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
+        """Advance by one control step of 0.02 s."""
+        env = self.environment
+        before = env.base_observation
+        observation, _, absorbing, info = env.step(action)
+        truncated = not absorbing and env.step_count >= env.horizon
+        if self._reward is not None:
+            reward = float(self._reward(env, before, action, env.base_observation, absorbing))
+        else:
+            reward = float(info["success"]) if absorbing or truncated else 0.0
+        return observation, reward, absorbing, truncated, info
+
+
+def register() -> None:
+    """Register every task with Gymnasium, once."""
+    for name in TASKS:
+        id_ = f"{NAMESPACE}/{name}-v0"
+        if id_ not in gymnasium.registry:
+            gymnasium.register(id_, entry_point=f"{__name__}:AirHockeyEnv", kwargs={"name": name}, order_enforce=True)
+
+
+register()

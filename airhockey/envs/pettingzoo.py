@@ -1,0 +1,127 @@
+"""A game of two as a PettingZoo environment: `airhockey/tournament-v0`, a parallel one.
+
+import airhockey.envs.pettingzoo
+import pettingzoo
+
+game = pettingzoo.make("parallel", "airhockey/tournament-v0", disturbances="server")
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from airhockey.errors import MissingDependencyError
+
+try:
+    import pettingzoo
+    from gymnasium import spaces
+except ImportError as error:
+    raise MissingDependencyError(
+        f"this interface needs PettingZoo, which cannot be imported ({error}); install it with: pip install 'airhockey[rl]'"
+    ) from error
+
+from airhockey.envs.actions import ActionFormat
+from airhockey.envs.environment import Environment, Order
+
+Array = NDArray[np.float64]
+ID = "airhockey/tournament-v0"
+PLAYERS = ("home", "away")
+
+
+class TournamentEnv(pettingzoo.ParallelEnv[str, Array, Array]):
+    """A whole game, 45,000 control steps: every point, fault or stuck puck is followed by the next serve.
+
+    Each player sees the table from its own side; see `airhockey.envs.Environment`. The reward is +1 for a point and −1 for
+    the opponent's. A player's `info` holds `constraints_value`, its `score` and `faults`, and `serve`: whether the
+    observation is the first of a new serve (where an agent's `episode_start` is due). The game is truncated at its end.
+
+    Args:
+        interpolation_order: 1, 2, 3, 4, 5, -1 or None, or a pair of them.
+        disturbances: A profile's name, the path of a YAML file, or a profile.
+        max_cycles: Length of the game in control steps, if not the rules'.
+
+    Attributes:
+        environment: The challenge environment behind it.
+    """
+
+    metadata = {"name": ID, "render_modes": []}  # noqa: RUF012 - PettingZoo's own way to say so
+
+    def __init__(
+        self,
+        interpolation_order: Order | tuple[Order, Order] = 3,
+        disturbances: Any = "ideal",
+        max_cycles: int | None = None,
+    ) -> None:
+        self.environment = Environment("tournament", interpolation_order, disturbances)
+        self.possible_agents = list(PLAYERS)
+        self.agents: list[str] = []
+        self.render_mode = None
+        self._steps = self.environment.horizon if max_cycles is None else max_cycles
+        seen = self.environment.env_info["rl_info"].observation_space.shape
+        robot = self.environment.simulation.robot
+        self._boxes = {player: spaces.Box(-np.inf, np.inf, seen, np.float64) for player in PLAYERS}
+        self._actions = {
+            player: _box(form, robot) for player, form in zip(PLAYERS, self.environment.formats, strict=True)
+        }
+
+    def observation_space(self, agent: str) -> spaces.Box:
+        """Unbounded: joints overshoot, and noise reaches beyond any limit."""
+        return self._boxes[agent]
+
+    def action_space(self, agent: str) -> spaces.Box:
+        """Of the player's interpolation order."""
+        return self._actions[agent]
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, Array], dict[str, dict[str, Any]]]:
+        """Begin a game; `options` are not looked at."""
+        if seed is None:
+            self.environment.new_game()
+        observation = self.environment.reset(None if seed is None else int(seed) % 2**32)
+        self.agents, self._step, self._score = list(PLAYERS), 0, self.environment.score
+        return self._split(observation), {player: {"serve": True} for player in PLAYERS}
+
+    def step(
+        self, actions: dict[str, Array]
+    ) -> tuple[dict[str, Array], dict[str, float], dict[str, bool], dict[str, bool], dict[str, dict[str, Any]]]:
+        """Advance by one control step of 0.02 s; a serve that ended is followed by the next one at once."""
+        env = self.environment
+        observation, _, over, info = env.step((actions["home"], actions["away"]))
+        constraints = [
+            {name: values.copy() for name, values in by_name.items()} for by_name in info["constraints_value"]
+        ]
+        points = [after - before for after, before in zip(env.score, self._score, strict=True)]
+        self._score, self._step = env.score, self._step + 1
+        if over:
+            observation = env.reset()
+        ended = self._step >= self._steps
+        infos = {
+            player: {
+                "constraints_value": constraints[k], "score": env.score[k], "faults": env.faults[k], "serve": over
+            }
+            for k, player in enumerate(PLAYERS)
+        }  # fmt: skip
+        rewards = {"home": float(points[0] - points[1]), "away": float(points[1] - points[0])}
+        if ended:
+            self.agents = []
+        return self._split(observation), rewards, dict.fromkeys(PLAYERS, False), dict.fromkeys(PLAYERS, ended), infos
+
+    def _split(self, observation: Array) -> dict[str, Array]:
+        half = observation.size // 2
+        return {"home": observation[:half], "away": observation[half:]}
+
+
+def _box(form: ActionFormat, robot: Any) -> spaces.Box:
+    low, high = form.limits(robot)
+    return spaces.Box(low, high, dtype=np.float64)
+
+
+def register() -> None:
+    """Register the game with PettingZoo, once."""
+    if ID not in pettingzoo.parallel_registry:
+        pettingzoo.register("parallel", ID, f"{__name__}:TournamentEnv")
+
+
+register()

@@ -1,0 +1,98 @@
+"""The function that engines run: it plays episodes of given parameters, and says what they were worth."""
+
+import zlib
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from airhockey.agents.base import AgentBase
+from airhockey.agents.parameters import convert
+from airhockey.agents.thesis.parameters import ThesisParameters
+from airhockey.evaluator import seeding
+from airhockey.evaluator.episode import agent_failures, describe
+from airhockey.learning.pgpe.records import Manifest, Outcome, RolloutJob
+from airhockey.learning.pgpe.stage import Stage, environments_of
+from airhockey.learning.pgpe.trainable import bounds, replaced
+
+_TRAINING = zlib.crc32(b"training")
+"""First key of training seeds; an evaluation's begin with the checksum of an environment's name."""
+
+
+@dataclass
+class Rollouts:
+    """Plays the episodes of a training run. Picklable until it has played the first one.
+
+    Attributes:
+        manifest: The run's.
+    """
+
+    manifest: Manifest
+    _stages: dict[str, Stage] = field(default_factory=dict, repr=False)
+    _players: dict[str, tuple[tuple[float, ...], AgentBase]] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        settings = self.manifest.settings
+        self._environments = environments_of(settings.task, settings.robot)
+        self._start = convert(ThesisParameters, self.manifest.parameters, "train.json: parameters")
+        self._lower, self._upper = bounds(settings.names)
+
+    def __call__(self, job: RolloutJob) -> Outcome:
+        """Play one episode; the outcome depends on the manifest and on the job, not on what was played before."""
+        stage = self._stage(self._environments[job.episode % len(self._environments)])
+        seed = self._seed(job)
+        seeding.seed_global_generators(seed)
+        try:
+            return self._play(stage, self._player(stage, job.theta), seed)
+        except agent_failures() as failure:
+            self._players.clear()  # a player that broke down starts afresh
+            return Outcome(error=describe(failure))
+
+    def _stage(self, name: str) -> Stage:
+        if name not in self._stages:
+            settings = self.manifest.settings
+            self._stages[name] = Stage(settings.task, name, settings.discount, self.manifest.profile)
+        return self._stages[name]
+
+    def _player(self, stage: Stage, theta: tuple[float, ...]) -> AgentBase:
+        """The player with these parameters, built anew when they are others than the last ones."""
+        known = self._players.get(stage.name)
+        if known is not None and known[0] == theta:
+            return known[1]
+        within = np.clip(theta, self._lower, self._upper)
+        values = dict(zip(self.manifest.settings.names, map(float, within), strict=True))
+        player = stage.player(replaced(self._start, values))
+        self._players[stage.name] = theta, player
+        return player
+
+    def _seed(self, job: RolloutJob) -> np.random.SeedSequence:
+        settings = self.manifest.settings
+        candidate = 0 if settings.common_random_numbers else job.candidate + 1
+        return np.random.SeedSequence(settings.seed, spawn_key=(_TRAINING, job.iteration, candidate, job.episode))
+
+    def _play(self, stage: Stage, player: AgentBase, seed: np.random.SeedSequence) -> Outcome:
+        env, reward = stage.env, stage.reward
+        shaped = self.manifest.settings.reward == "thesis"
+        discount, value, weight = self.manifest.settings.discount, 0.0, 1.0
+        player.episode_start()
+        observation = stage.begin(seed)
+        state = env.base_observation
+        violated = np.zeros(env.constraint_values.size, dtype=bool)
+        absorbing = False
+        while not absorbing and env.step_count < env.horizon:
+            action = player.draw_action(observation)
+            observation, _, absorbing, _ = env.step(action)
+            violated |= env.constraint_values > 0.0
+            if shaped:
+                next_state = env.base_observation
+                value += weight * reward(env, state, action, next_state, absorbing)
+                weight *= discount
+                state = next_state
+        success = stage.accomplished()
+        names = tuple(name for name, part in env.constraint_slices.items() if violated[part].any())
+        return Outcome(
+            value=value if shaped else float(success),
+            success=success,
+            penalty=sum(env.edition.penalty_points[name] for name in names),
+            violated=names,
+            steps=env.step_count,
+        )

@@ -1,0 +1,1 @@
+"""Skills by Soft Actor Critic (or its optimistic kin) on Gymnasium, acting through ATACOM."""

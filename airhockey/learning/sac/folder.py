@@ -1,0 +1,120 @@
+"""A run's folder, written so that it can be killed at any moment.
+
+train.json       the manifest
+log.csv          a line every so many episodes
+checkpoint.pkl   everything needed to go on, replay buffer and random states included
+network.npz      the policy, as a player reads it
+card.yaml        where it comes from and, at the end, what it reaches
+
+The checkpoint is this program's own pickle: like any other, it must not be taken from strangers.
+"""
+
+import csv
+import datetime
+import os
+import pickle
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import yaml
+
+from airhockey import envs
+from airhockey.agents.atacom.network import Network
+from airhockey.errors import ConfigurationError
+from airhockey.evaluator.disk import begin_folder, disk_errors, lock_folder, replace_file
+from airhockey.learning.sac.plots import LOG
+from airhockey.learning.sac.records import Line, Manifest, Settings
+
+MANIFEST, CHECKPOINT, NETWORK, CARD = "train.json", "checkpoint.pkl", "network.npz", "card.yaml"
+
+
+class SkillFolder:
+    """The folder, opened for writing by one process at a time.
+
+    Attributes:
+        path: The folder.
+        manifest: What the run is.
+    """
+
+    def __init__(self, path: Path, manifest: Manifest) -> None:
+        """Use `create` or `open`."""
+        self.path, self.manifest = path, manifest
+        self._lock = lock_folder(path)
+
+    @classmethod
+    def create(cls, path: Path, settings: Settings) -> "SkillFolder":
+        """Begin a run in a folder that does not exist or is empty; raises `ConfigurationError`."""
+        manifest = Manifest(settings, versions(), datetime.datetime.now().astimezone().isoformat(timespec="seconds"))
+        begin_folder(path, MANIFEST, manifest)
+        return cls(path, manifest)
+
+    @classmethod
+    def open(cls, path: Path) -> "SkillFolder":
+        """Take up a run; raises `ConfigurationError` where there is none, or other software began it."""
+        try:
+            manifest = msgspec.json.decode((path / MANIFEST).read_bytes(), type=Manifest)
+        except OSError:
+            raise ConfigurationError(f"there is no training run in {str(path)!r}: it has no {MANIFEST}") from None
+        except (msgspec.MsgspecError, ValueError) as error:
+            raise ConfigurationError(f"cannot read {str(path / MANIFEST)!r}: {error}") from error
+        for name, version in versions().items():
+            if manifest.versions.get(name) != version:
+                raise ConfigurationError(
+                    f"the run in {str(path)!r} was begun with {name} {manifest.versions.get(name)}, this is {version}"
+                )
+        return cls(path, manifest)
+
+    def close(self) -> None:
+        """Let others at the folder."""
+        os.close(self._lock)
+
+    def add(self, line: Line) -> None:
+        """A line of the log."""
+        with disk_errors(self.path), (self.path / LOG).open("a", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            if file.tell() == 0:
+                writer.writerow(Line.__struct_fields__)
+            values = msgspec.structs.astuple(line)
+            writer.writerow([f"{value:.6g}" if isinstance(value, float) else value for value in values])
+
+    def save(self, state: dict[str, Any], network: Network) -> None:
+        """A checkpoint and the policy at it, each whole or not at all."""
+        with disk_errors(self.path):
+            log = self.path / LOG
+            state = {**state, "log": log.stat().st_size if log.exists() else 0}
+            replace_file(self.path / CHECKPOINT, pickle.dumps(state, protocol=5))
+            part = self.path / f"part-{NETWORK}"
+            network.save(part)
+            part.replace(self.path / NETWORK)
+
+    def load(self) -> dict[str, Any] | None:
+        """The last checkpoint, or None before the first; what the log says of later episodes is cut off."""
+        log, path = self.path / LOG, self.path / CHECKPOINT
+        state: dict[str, Any] | None = pickle.loads(path.read_bytes()) if path.exists() else None
+        if log.exists():
+            os.truncate(log, min(log.stat().st_size, 0 if state is None else state["log"]))
+        return state
+
+    def write_card(self, figures: dict[str, Any]) -> None:
+        """Where the policy comes from, and what it reaches."""
+        card = {
+            "data": "episodes simulated by this package, each with a seed of its own; nothing else",
+            "settings": msgspec.structs.asdict(self.manifest.settings),
+            "figures": figures,
+            "versions": self.manifest.versions,
+            "made": self.manifest.created,
+        }
+        text = yaml.safe_dump(card, sort_keys=False, allow_unicode=True)
+        with disk_errors(self.path):
+            replace_file(self.path / CARD, text.encode())
+
+
+def versions() -> dict[str, str]:
+    """Of all that decides a result."""
+    import stable_baselines3
+    import torch
+
+    return {
+        **envs.versions(), "torch": str(torch.__version__), "stable_baselines3": str(stable_baselines3.__version__)
+    }  # fmt: skip

@@ -1,0 +1,69 @@
+"""`hockey train sac` as a user meets it: a run, a kill, its continuation, and bad input."""
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import yaml
+from command_line import Hockey
+
+SHORT = "train sac --task home --robot 3dof --warm-up 120 --batch 32 --hidden 8"
+
+
+def test_a_run_says_what_it_reached(hockey: Hockey) -> None:
+    status, out, err = hockey(f"{SHORT} --steps 260 --episodes 2 --out run")
+    assert status == 0
+    assert "2 unseen episodes: success" in out and "run/network.npz" in out
+    assert "violations" in err
+    card = yaml.safe_load(Path("run/card.yaml").read_text())
+    assert card["settings"]["steps"] == 260
+    assert card["figures"]["actions"] >= 260
+    assert Path("run/network.npz").stat().st_size < 500_000
+    status, out, _ = hockey("plot run")
+    assert status == 0 and Path(out.strip()).read_bytes().startswith(b"\x89PNG")
+    status, _, err = hockey("plot run --sweep 0")
+    assert status == 2 and "no θ" in err
+    status, _, err = hockey(f"{SHORT} --steps 260 --out run")
+    assert status == 2 and "not empty" in err
+    status, _, err = hockey("train sac --resume --seed 1 --out run")
+    assert status == 2 and "seed 0, not 1" in err
+
+
+def test_a_killed_run_is_resumed(hockey: Hockey) -> None:
+    line = f"{SHORT} --steps 100000 --out run"
+    process = subprocess.Popen([sys.executable, "-m", "airhockey.cli", *line.split()], stderr=subprocess.DEVNULL)
+    manifest, deadline = Path("run/train.json"), time.monotonic() + 60
+    while not manifest.exists() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    manifest.write_text(manifest.read_text().replace('"steps": 100000', '"steps": 200'))
+    status, out, _ = hockey("train sac --resume --out run --episodes 1 --quiet")
+    assert status == 0 and "1 unseen episodes" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        ("--resume", "--out FOLDER"),
+        ("--optimism 1", "--algorithm oac"),
+        ("--disturbances windy", "windy"),
+        ("--resume --out nowhere", "no training run"),
+        ("--steps 0", "steps"),
+        ("--algorithm ppo", "ppo"),
+    ],
+)
+def test_bad_input_is_one_line(hockey: Hockey, arguments: str, named: str) -> None:
+    status, out, err = hockey(f"train sac {arguments}")
+    assert status == 2 and out == ""
+    assert named in err and len(err.splitlines()) == 1
+    assert not list(Path.cwd().iterdir())
+
+
+def test_help_has_examples(hockey: Hockey) -> None:
+    status, out, _ = hockey("train sac --help")
+    assert status == 0
+    assert "hockey train sac --task home" in out

@@ -10,7 +10,7 @@ from airhockey.agents.atacom.chain import chain_of, task_coordinates
 from airhockey.agents.atacom.controller import AtacomController
 from airhockey.agents.atacom.limits import limits_of
 from airhockey.agents.atacom.parameters import atacom_parameters
-from airhockey.agents.atacom.tangent import constraint_rows, tangent_control
+from airhockey.agents.atacom.tangent import compensation, constraint_rows, tangent_control
 from airhockey.agents.control.kinematics import ArmKinematics
 from airhockey.envs.specs import IIWA, PLANAR
 
@@ -90,20 +90,48 @@ def test_constraints_change_as_their_rows_say(robot):
 
 @ROBOTS
 def test_the_control_is_the_one_of_the_methods(robot):
-    """[u; u_μ] = −J_u⁺ b + (1 − J_u⁺ J_u) [a; 0], computed as it is written."""
+    """The tangent part is the projection (1 − J_u⁺ J_u) [a; 0], computed as it is written; the rest is −J_u⁺ b."""
     spec, random = SPECS[robot], np.random.default_rng(3)
     n, checked = spec.n_joints, 0
     for _ in range(150):
         q, velocity = random_state(spec, random)
         _, b, jacobian, a = rows_at(spec, q, 0.3 * velocity)
         action = random.uniform(-0.3, 0.3, n)
+        rest = compensation(b, jacobian, a)
         whole = np.hstack([jacobian, np.diag(a)])
         inverse = np.linalg.pinv(whole, rcond=1e-15)
-        expected = -inverse @ b + (np.eye(len(whole.T)) - inverse @ whole) @ np.concatenate([action, np.zeros(len(b))])
-        if np.abs(expected[:n]).max() < 0.99 and np.abs((inverse @ b)[:n]).max() < 0.99:
-            np.testing.assert_allclose(tangent_control(action, b, jacobian, a), expected[:n], atol=1e-6)
+        tangent = ((np.eye(len(whole.T)) - inverse @ whole) @ np.concatenate([action, np.zeros(len(b))]))[:n]
+        if np.abs(rest).max() < 1.0 and np.abs(rest + tangent).max() < 1.0:
+            np.testing.assert_allclose(tangent_control(action, b, jacobian, a), rest + tangent, atol=1e-6)
             checked += 1
+        used = jacobian @ rest + b > 0.0  # without those whose slack grows it is the pseudo-inverse's
+        some = np.hstack([jacobian[used], np.diag(a[used])])
+        np.testing.assert_allclose(rest, (-np.linalg.pinv(some, rcond=1e-15) @ b[used])[:n], atol=1e-6)
     assert checked > 10
+
+
+@ROBOTS
+def test_the_compensation_is_the_least_of_its_cost(robot):
+    spec, random = SPECS[robot], np.random.default_rng(8)
+    n = spec.n_joints
+    for _ in range(30):
+        q, velocity = random_state(spec, random)
+        _, b, jacobian, a = rows_at(spec, q, velocity)
+
+        def cost(u, b=b, jacobian=jacobian, a=a):
+            return 0.5 * u @ u + 0.5 * np.sum((np.maximum(jacobian @ u + b, 0.0) / a) ** 2)
+
+        least = compensation(b, jacobian, a)
+        for direction in random.normal(size=(20, n)):
+            assert cost(least) <= cost(least + 0.01 * direction) + 1e-9
+
+
+def test_a_joint_at_its_largest_speed_brakes_for_a_limit_ahead():
+    ahead, b, a = np.array([1.0, 0.3]), np.array([0.5, 0.0]), np.array([1e-3, 1e-3])  # no slack in the second
+    braking = -0.5 * ahead / (ahead @ ahead)
+    np.testing.assert_allclose(compensation(b, np.array([ahead, [1.0, 0.0]]), a), braking, atol=1e-4)
+    other_joint = [0.0, -0.5 / 0.3]  # where the first may not be slowed down
+    np.testing.assert_allclose(compensation(b, np.array([ahead, [-1.0, 0.0]]), a), other_joint, atol=1e-4)
 
 
 def test_the_tangent_part_is_scaled_down_to_what_the_drift_leaves():

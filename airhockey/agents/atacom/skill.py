@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 REPEAT = 2
 """Control steps that an action lasts: 0.04 s."""
-ARRIVED = 0.01
+ARRIVED = 0.015
 """Distance from home that counts as home, in [m]."""
 
 
@@ -64,6 +64,6 @@ HOME_SKILL = Skill(
     "home",
     f.HOME_MIRROR,
     lambda s: f.home_features(s.puck, s.tip, s.tip_velocity),
-    lambda s: bool(np.hypot(*(HOME - s.tip)) < ARRIVED and np.hypot(*s.tip_velocity) < 0.05),
+    lambda s: bool(np.hypot(*(HOME - s.tip)) < ARRIVED and np.hypot(*s.tip_velocity) < 0.1),
 )
 SKILLS = {skill.name: skill for skill in (DEFEND, HOME_SKILL)}

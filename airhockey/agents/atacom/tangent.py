@@ -15,7 +15,9 @@ Woodbury's identity leaves a system of the size of the arm, whatever the number 
 
     u = (1 + J_Gᵀ A⁻² J_G)⁻¹ (a − J_Gᵀ A⁻² b)
 
-Two choices of ours: only a drift towards a limit is compensated (ψ⁺), and β and the scale g are each constraint's own.
+Three choices of ours: only a drift towards a limit is compensated (ψ⁺); β and the scale g are each constraint's own; and in
+the first term a constraint counts only where that term would use its slack up (see `compensation`). With slacks that resist
+in both directions a joint at its largest speed could not brake, and a limit ahead was met by swerving instead.
 """
 
 from math import exp
@@ -27,9 +29,12 @@ from airhockey.agents.atacom.limits import Limits
 from airhockey.agents.compiling import compiled
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 SMALLEST, LARGEST = 1e-3, 1e3
 """Of A, in units of g: a slack of nothing still moves, and one of plenty is not felt."""
+_ROUNDS = 12
+"""Of Newton's method; two or three are common."""
 
 
 @compiled
@@ -105,22 +110,49 @@ def tangent_control(action: Array, b: Array, jacobian: Array, a: Array) -> Array
         u, each of its entries in [−1, 1]. Shape (n,).
     """
     n = action.size
-    matrix, right = np.eye(n), np.zeros((n, 2))
-    right[:, 1] = action
-    for i in range(b.size):
-        weight = 1.0 / (a[i] * a[i])
-        for j in range(n):
-            if jacobian[i, j] != 0.0:
-                right[j, 0] -= weight * jacobian[i, j] * b[i]
-                for k in range(n):
-                    matrix[j, k] += weight * jacobian[i, j] * jacobian[i, k]
-    solved = np.linalg.solve(matrix, right)
-    control, room = np.empty(n), 1.0
+    every = np.ones(b.size, dtype=np.bool_)
+    tangent = np.linalg.solve(_gram(every, jacobian, a), action)
+    control, room = compensation(b, jacobian, a), 1.0
     for j in range(n):
-        control[j] = min(max(solved[j, 0], -1.0), 1.0)
-        wanted = solved[j, 1]
-        if abs(wanted) > 1e-12:
-            room = min(room, ((1.0 if wanted > 0.0 else -1.0) - control[j]) / wanted)
-    for j in range(n):
-        control[j] += room * solved[j, 1]
+        control[j] = min(max(control[j], -1.0), 1.0)
+        if abs(tangent[j]) > 1e-12:
+            room = min(room, ((1.0 if tangent[j] > 0.0 else -1.0) - control[j]) / tangent[j])
+    return control + room * tangent
+
+
+@compiled
+def compensation(b: Array, jacobian: Array, a: Array) -> Array:
+    """The smallest control that makes up for drift and contraction: argmin ½‖u‖² + ½‖A⁻¹ (J_G u + b)⁺‖².
+
+    A constraint whose slack the control lets grow does not resist it: a joint at its largest speed may always brake. The
+    rows that count are found by Newton's method, which ends where they stay the same. Shape (n,).
+    """
+    counts = b > 0.0
+    control = np.zeros(jacobian.shape[1])
+    for _ in range(_ROUNDS):
+        right = np.zeros(control.size)
+        for i in range(b.size):
+            if counts[i]:
+                right -= jacobian[i] * (b[i] / (a[i] * a[i]))
+        control = np.linalg.solve(_gram(counts, jacobian, a), right)
+        next_counts = jacobian @ control + b > 0.0
+        if np.all(next_counts == counts):
+            break
+        counts = next_counts
     return control
+
+
+@compiled
+def _gram(counts: Flags, jacobian: Array, a: Array) -> Array:
+    """1 + J_Gᵀ A⁻² J_G over the rows that count. Shape (n, n)."""
+    n = jacobian.shape[1]
+    matrix = np.eye(n)
+    for i in range(a.size):
+        if counts[i]:
+            weight = 1.0 / (a[i] * a[i])
+            for j in range(n):
+                scaled = weight * jacobian[i, j]
+                if scaled != 0.0:
+                    for k in range(n):
+                        matrix[j, k] += scaled * jacobian[i, k]
+    return matrix

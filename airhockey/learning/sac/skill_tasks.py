@@ -47,7 +47,7 @@ class HomeEnv(SkillEnv):
     The start is where random actions of ATACOM lead from the start posture, in motion.
     """
 
-    LONGEST, ARRIVAL, TOUCH = 75, 1.0, 1.0
+    LONGEST, ARRIVAL, TOUCH, NEAR = 75, 2.0, 1.0, 0.1
 
     def __init__(self, robot: str, disturbances: Any = "ideal") -> None:
         super().__init__(AirHockeyEnv(f"{robot}-hit", disturbances=disturbances), HOME_SKILL)
@@ -66,9 +66,9 @@ class HomeEnv(SkillEnv):
         return self._environment.reset(state=state)
 
     def shaping(self, before: Situation, after: Situation) -> float:
-        """−‖way‖ for every action, and −1 while the mallet touches the puck."""
-        gap = float(np.hypot(*(after.puck[:2] - after.tip))) - CONTACT
-        return -float(np.hypot(*(HOME - after.tip))) - self.TOUCH * (gap < 0.005)
+        """−‖way‖ − 0.2 min(1, ‖way‖ / 0.1 m) for every action, and −1 while the mallet touches the puck."""
+        gap, way = (float(np.hypot(*(point - after.tip))) for point in (after.puck[:2], HOME))
+        return -way - 0.2 * min(1.0, way / self.NEAR) - self.TOUCH * (gap - CONTACT < 0.005)
 
     def conclude(self, seen: Situation) -> tuple[bool, float]:
         """A success is to arrive with the puck still on the table."""

@@ -56,7 +56,7 @@ AGENTS: dict[str, AgentEntry] = {
         ),
         AgentEntry(
             "thesis-final",
-            "the thesis's last player: hit and prepare by rules, defend and home learned (SAC on ATACOM)",
+            "the thesis's last player: hit and prepare by rules; defend and home by SAC on ATACOM (iiwa; planar: rules)",
             EVERY_ENVIRONMENT,
             "airhockey.agents.thesis.final:FinalThesisAgent",
         ),

@@ -1,6 +1,7 @@
 """`hockey train pgpe`, `hockey plot` and `hockey evaluate --parameters` as a user meets them."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -27,9 +28,8 @@ def test_a_run_its_parameters_its_pictures_and_its_continuation(hockey: Hockey) 
     played = "--env 3dof-hit --episodes 1 --jobs 1 --json --quiet"
     status, out, _ = hockey(f"evaluate {played} --parameters run/parameters.yaml")
     assert status == 0 and json.loads(out)["success"] == 1.0
-    Path("lame.yaml").write_text(
-        Path("run/parameters.yaml").read_text().replace("longest_step: 0.02", "longest_step: 0.0")
-    )
+    trained = Path("run/parameters.yaml").read_text()
+    Path("lame.yaml").write_text(re.sub("longest_step: .*", "longest_step: 0.0", trained))
     status, out, _ = hockey(f"evaluate {played} --parameters lame.yaml")
     assert status == 0 and json.loads(out)["success"] == 0.0
 

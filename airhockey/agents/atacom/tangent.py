@@ -134,7 +134,7 @@ def compensation(b: Array, jacobian: Array, a: Array) -> Array:
         for i in range(b.size):
             if counts[i]:
                 right -= jacobian[i] * (b[i] / (a[i] * a[i]))
-        control = np.linalg.solve(_gram(counts, jacobian, a), right)
+        control[:] = np.linalg.solve(_gram(counts, jacobian, a), right)
         next_counts = jacobian @ control + b > 0.0
         if np.all(next_counts == counts):
             break

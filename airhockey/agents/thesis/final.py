@@ -1,4 +1,7 @@
-"""`thesis-final`: the thesis's last player (5.3): hit and prepare by rules, defend and home learned under constraints."""
+"""`thesis-final`: the thesis's last player (5.3): hit and prepare by rules, defend and home learned under constraints.
+
+Networks come with the package for the iiwa. Where there is none for a robot and a task, the rule-based policy plays it.
+"""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -87,7 +90,7 @@ class FinalThesisAgent(ThesisAgent):
         Args:
             env_info: Description of the environment.
             agent_id: 1 or 2.
-            defend, home: Networks, as files; by default those that come with the package.
+            defend, home: Networks, as files; by default those that come with the package for the robot, or else rules.
             kwargs: Those of `ThesisAgent`.
 
         Raises:

@@ -13,14 +13,16 @@ BLOCK = re.compile(
     r"^```(?P<language>\w+)(?: title=\"(?P<title>[^\"]+)\")?\n(?P<body>.*?)^```$", re.MULTILINE | re.DOTALL
 )
 HURRY = {"--episodes": "4", "--steps": "60", "--size": "160x90"}
-"""Option -> the value that it gets here."""
+"""Option -> what it gets here for a number or a size; a list of episodes stays."""
 
 
 def run(line: str, folder: Path) -> str:
     """Run one command line in a folder; gives everything that it prints."""
     program, *words = shlex.split(line)
     assert program == "hockey"
-    words = [HURRY.get(before, word) for before, word in zip(["", *words], words, strict=False)]
+    words = [
+        word if "," in word else HURRY.get(before, word) for before, word in zip(["", *words], words, strict=False)
+    ]
     one_core = ["--jobs", "1"] if words[0] in ("evaluate", "match", "tournament") and "--show" not in words else []
     ended = subprocess.run(
         [sys.executable, "-m", "airhockey.cli", *words, *one_core],

@@ -33,7 +33,7 @@ def main() -> None:
 
 def reference() -> Iterator[str]:
     """The lines of the whole page."""
-    context = click.Context(hockey, info_name="hockey")
+    context = click.Context(hockey, info_name="hockey", help_option_names=["-h", "--help"])
     yield "# Command line\n"
     yield "Written from the commands' own help; `hockey COMMAND --help` says the same.\n"
     yield from help_text(hockey)
@@ -101,8 +101,8 @@ def in_code(text: str) -> str:
 
 
 def cell(text: str) -> str:
-    """Text as code in a table's cell."""
-    return f"`{text}`".replace("|", BAR) if text else ""
+    """Text as code in a table's cell, one piece for each of its alternatives: Markdown has no | in code in a table."""
+    return ", ".join(f"`{part}`" for part in text.split("|")) if text else ""
 
 
 def fenced(text: str, language: str) -> str:

@@ -1,5 +1,6 @@
 """The documentation as it is built: no dead link, nothing from elsewhere, every command and option described."""
 
+import os
 import re
 import shlex
 import shutil
@@ -18,6 +19,7 @@ from airhockey.cli import hockey
 ROOT = Path(__file__).parents[2]
 PAGES = [page for page in sorted((ROOT / "docs").rglob("*.md")) if page.name != "commands.md"]
 COMMANDS = hockey.list_commands(click.Context(hockey))
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 CODE_BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -92,6 +94,26 @@ def test_every_link_leads_somewhere(site: dict[Path, Page]) -> None:
 
 def test_nothing_is_fetched_from_elsewhere(site: dict[Path, Page]) -> None:
     assert [load for page in site.values() for load in page.loads if load.startswith(("http:", "https:", "//"))] == []
+
+
+def test_pages_are_whole_in_a_browser_on_a_phone(site: dict[Path, Page]) -> None:
+    """Opened from the disk: every picture is there, nothing is asked of the network, nothing sticks out sideways."""
+    if CHROMIUM is None:
+        assert "CI" not in os.environ, "CI has to have Chromium: apt-get install chromium"
+        pytest.skip("there is no Chromium on this machine: apt-get install chromium")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
+        tab = chromium.new_page(viewport={"width": 375, "height": 800})
+        asked: list[str] = []
+        tab.on("request", lambda request: asked.append(request.url))
+        for path in site:
+            tab.goto(path.as_uri())
+            assert tab.evaluate("[...document.images].every(image => image.naturalWidth > 0)"), path.name
+            assert tab.evaluate("document.documentElement.scrollWidth <= innerWidth"), path.name
+        chromium.close()
+    assert [url for url in asked if not url.startswith(("file:", "data:"))] == []
 
 
 @pytest.mark.parametrize("link", ["[a page](nowhere.md)", "[a heading](scaling.md#nowhere)"])

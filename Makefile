@@ -1,18 +1,19 @@
-# The two commands of the README. Both set up .venv on first use; all they need is Python 3.11 or newer and make.
+# The commands of the README. They set up .venv on first use; all they need is Python 3.11 or newer and make.
 #   make evaluate     the main job on the default agent (core dependencies only)
-#   make test         lint, types, layers and tests
+#   make test         lint, types, layers, documentation and tests
+#   make docs         the documentation, in build/site
 
 PYTHON ?= python3
 BIN := .venv/bin
 TASK ?= prepare
 EPISODES ?= 1000
 
-.PHONY: evaluate test lint types layers pytest clean
+.PHONY: evaluate test lint types layers docs pytest clean
 
 evaluate: .venv/core.installed
 	$(BIN)/hockey evaluate --task $(TASK) --episodes $(EPISODES)
 
-test: lint types layers pytest
+test: lint types layers docs pytest
 
 lint: .venv/dev.installed
 	$(BIN)/ruff check
@@ -24,11 +25,15 @@ types: .venv/dev.installed
 layers: .venv/dev.installed
 	$(BIN)/lint-imports
 
+docs: .venv/dev.installed
+	$(BIN)/python scripts/command_reference.py docs/commands.md
+	$(BIN)/zensical build --strict --clean
+
 pytest: .venv/dev.installed
 	$(BIN)/pytest --numprocesses auto
 
 clean:
-	rm -rf .venv build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .import_linter_cache
+	rm -rf .venv build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .cache docs/commands.md
 
 .venv/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed; say which with make PYTHON=...")'

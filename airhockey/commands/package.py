@@ -18,7 +18,7 @@ def package(folder: Path, out: Path | None) -> None:
 
     \b
     hockey package my_agent
-    hockey evaluate --agent my-agent-0.1.0.zip --task hit
+    hockey evaluate --agent my_agent-0.1.0.zip --task hit
     """
     from airhockey.agents.packaging.packing import pack
 

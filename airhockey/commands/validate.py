@@ -21,7 +21,7 @@ def validate(ctx: click.RichContext, /, **given: Any) -> None:
 
     \b
     hockey validate my_agent
-    hockey validate my-agent-0.1.0.zip --steps 500
+    hockey validate my_agent-0.1.0.zip --steps 500
     """
     from airhockey.commands._validation import run
 

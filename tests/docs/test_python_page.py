@@ -1,0 +1,39 @@
+"""The programs on the page about Python run."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from airhockey import envs
+
+PAGE = Path(__file__).parents[2] / "docs" / "howto" / "python.md"
+ENVIRONMENT, AGENT, MUSHROOM = re.findall(r"^```python\n(.*?)^```$", PAGE.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+
+
+def test_the_program_with_an_environment(capsys: pytest.CaptureFixture[str]) -> None:
+    exec(ENVIRONMENT, {})
+    assert capsys.readouterr().out in ("goal!\n", "no goal\n")
+
+
+def test_the_agent_stays_where_it_is() -> None:
+    names: dict[str, Any] = {}
+    exec(AGENT, names)
+    env = envs.make("3dof-defend")
+    agent = names["Still"](env.env_info)
+    agent.episode_start()
+    observation = env.reset(seed=0)
+    first, _ = agent.draw_action(observation)
+    for _ in range(5):
+        action = agent.draw_action(observation)
+        observation, *_ = env.step(action)
+    assert np.array_equal(action, [first, np.zeros(3)])
+
+
+def test_the_program_with_mushroom_rl() -> None:
+    pytest.importorskip("mushroom_rl")
+    names: dict[str, Any] = {}
+    exec(MUSHROOM, names)
+    assert -3.0 <= names["reward"] <= -0.5  # a puck comes at 1 to 3 m/s

@@ -10,7 +10,8 @@ import pytest
 from airhockey import envs
 
 PAGE = Path(__file__).parents[2] / "docs" / "howto" / "python.md"
-ENVIRONMENT, AGENT, MUSHROOM = re.findall(r"^```python\n(.*?)^```$", PAGE.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+PROGRAMS = re.findall(r"^```python\n(.*?)^```$", PAGE.read_text("utf-8"), re.MULTILINE | re.DOTALL)
+ENVIRONMENT, AGENT, MUSHROOM, GYMNASIUM = PROGRAMS
 
 
 def test_the_program_with_an_environment(capsys: pytest.CaptureFixture[str]) -> None:
@@ -37,3 +38,11 @@ def test_the_program_with_mushroom_rl() -> None:
     names: dict[str, Any] = {}
     exec(MUSHROOM, names)
     assert -3.0 <= names["reward"] <= -0.5  # a puck comes at 1 to 3 m/s
+
+
+def test_the_program_with_gymnasium() -> None:
+    pytest.importorskip("gymnasium")
+    names: dict[str, Any] = {}
+    exec(GYMNASIUM, names)
+    assert names["observation"].shape == names["env"].observation_space.shape
+    names["env"].close()

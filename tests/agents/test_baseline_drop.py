@@ -6,6 +6,7 @@ import pytest
 from airhockey.agents.baseline.drop import GAIN, PLACE, roll
 from airhockey.agents.baseline.evidence import FLIGHT, PATIENCE, ShotRecord
 from airhockey.agents.baseline.parameters import smash_parameters
+from airhockey.agents.baseline.roll_watch import RollWatch
 from airhockey.agents.baseline.rules import Rules, make_rules
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.motion import advance, puck_motion
@@ -26,7 +27,7 @@ def rules() -> Rules:
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_the_puck_comes_to_rest_at_the_place(puck: tuple[float, float], side: float, rules: Rules) -> None:
     place = PLACE * np.array([1.0, side])
-    shot = roll(np.array([*puck, 0.0, 0.0, 0.0]), 2.0, place, TIP, 0.0, rules)
+    shot = roll(np.array([*puck, 0.0, 0.0, 0.0]), 2.0, place, GAIN, TIP, 0.0, rules)
     assert shot.value == 1.0 and shot.wall == side
     assert np.hypot(*(shot.mallet - puck)) == pytest.approx(CONTACT)
     state = np.array([*puck, *(GAIN * shot.speed * shot.normal), 0.0])
@@ -36,11 +37,11 @@ def test_the_puck_comes_to_rest_at_the_place(puck: tuple[float, float], side: fl
 
 def test_a_drop_needs_time_to_get_behind_the_puck(rules: Rules) -> None:
     puck = np.array([-0.6, 0.0, 0.0, 0.0, 0.0])
-    assert roll(puck, 0.1, PLACE, TIP, 0.0, rules).value == 0.0
+    assert roll(puck, 0.1, PLACE, GAIN, TIP, 0.0, rules).value == 0.0
 
 
 def test_a_puck_beyond_reach_cannot_be_dropped(rules: Rules) -> None:
-    assert roll(np.array([0.1, 0.0, 0.0, 0.0, 0.0]), 2.0, PLACE, TIP, 0.0, rules).value == 0.0
+    assert roll(np.array([0.1, 0.0, 0.0, 0.0, 0.0]), 2.0, PLACE, GAIN, TIP, 0.0, rules).value == 0.0
 
 
 def pass_time(record: ShotRecord, seconds: float) -> None:
@@ -75,3 +76,18 @@ def test_a_serve_without_a_shot_says_nothing() -> None:
     pass_time(record, FLIGHT + 0.1)
     record.serve()
     assert (record.scored, record.failed) == (0, 1)
+
+
+@pytest.mark.parametrize("damping", [0.4, 0.5, 0.6])
+@pytest.mark.parametrize("place", [0.7, 0.9, 1.2])
+def test_the_watch_tells_where_a_puck_will_rest_whatever_its_damping(damping: float, place: float) -> None:
+    watch, told = RollWatch(DT), []
+    for k in range(300):
+        told.append(watch.see(place - (place + 0.55) * np.exp(-damping * k * DT)))
+    (rest,) = [answer for answer in told if answer is not None]
+    assert rest == pytest.approx(place, abs=0.01)
+
+
+def test_the_watch_tells_nothing_of_a_puck_that_is_stopped() -> None:
+    watch = RollWatch(DT)
+    assert all(watch.see(min(-0.55 + 0.01 * k, 0.3)) is None for k in range(300))

@@ -66,6 +66,7 @@ class BaselineAgent(AgentBase):
         self._shots.serve()
         self._watch.reset()
         self._smash.forget()
+        self._drop.forget()
         self._skill: Skill | None = None
         self._step = 0
 
@@ -81,6 +82,7 @@ class BaselineAgent(AgentBase):
         if striking and skill.phase == "recover":
             self._shots.struck()
         self._shots.wait(situation.dt)
+        self._drop.watch(situation)
         self.phase = f"{skill.name} {skill.phase}"
         return action
 

@@ -114,7 +114,7 @@ class Drop(Striker):
     def _plan(self, situation: Situation) -> Shot | None:
         """The stroke pursued, brought up to date; where there is none, the first that is possible."""
         puck = situation.puck
-        if puck.speed > SLOW:
+        if puck.speed > SLOW or puck.position[0] > self._rules.upper[0] + self._rules.contact:
             return None
         path = coast(puck.state, self._dt, round(WAITS[-1] / self._dt), self._rules.motion)
         if self._shot is not None and self._shot.wait > self._dt:

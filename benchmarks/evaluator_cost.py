@@ -16,12 +16,12 @@ from collections.abc import Callable, Generator, Iterable
 from pathlib import Path
 from typing import Any
 
-from airhockey.evaluator.workers import ONE_THREAD
+from airhockey.evaluator.engines.workers import ONE_THREAD
 
 os.environ.update(ONE_THREAD)
 
 from airhockey.evaluator import Engine, InProcess, Options, Processes, begin, evaluate
-from airhockey.evaluator.records import Job
+from airhockey.evaluator.runs.records import Job
 
 WARM_UP = 10**6  # an index that no run gets to
 

@@ -14,8 +14,8 @@ import mujoco
 
 from airhockey import envs
 from airhockey.envs.disturbances import load_disturbances
-from airhockey.evaluator.games.player import GamePlayer
-from airhockey.evaluator.games.records import GameJob, GameOptions, Status
+from airhockey.evaluator.play.game_player import GamePlayer
+from airhockey.evaluator.runs.game_records import GameJob, GameOptions, Status
 
 BLOCK = 500
 

@@ -17,14 +17,14 @@ import msgspec
 import numpy as np
 
 from airhockey.envs.disturbances import load_disturbances
-from airhockey.evaluator.cluster import Cluster
-from airhockey.evaluator.engines import Engine, InProcess, Processes
-from airhockey.evaluator.games.folder import GameFolder
-from airhockey.evaluator.games.player import Game, GamePlayer
-from airhockey.evaluator.games.records import GameJob, GameOptions, GameRecord
-from airhockey.evaluator.games.schedule import Entry, TournamentOptions, schedule
-from airhockey.evaluator.games.standings import write_standings
-from airhockey.evaluator.games.tournament import TOURNAMENT, TournamentManifest, begin_tournament
+from airhockey.evaluator.engines.cluster import Cluster
+from airhockey.evaluator.engines.engine import Engine, InProcess, Processes
+from airhockey.evaluator.judging.standings import write_standings
+from airhockey.evaluator.play.game_player import Game, GamePlayer
+from airhockey.evaluator.runs.game_folder import GameFolder
+from airhockey.evaluator.runs.game_records import GameJob, GameOptions, GameRecord
+from airhockey.evaluator.schedule import Entry, TournamentOptions, schedule
+from airhockey.evaluator.tournament import TOURNAMENT, TournamentManifest, begin_tournament
 
 WHOLE = 45000
 ENTRIES = (4, 8, 16, 32)

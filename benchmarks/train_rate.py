@@ -13,7 +13,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from airhockey.evaluator.workers import ONE_THREAD
+from airhockey.evaluator.engines.workers import ONE_THREAD
 
 os.environ.update(ONE_THREAD)
 
@@ -21,8 +21,8 @@ import numpy as np
 
 from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.evaluator import InProcess, Options, begin
-from airhockey.evaluator.player import Player
-from airhockey.evaluator.records import Job
+from airhockey.evaluator.play.episode_player import Player
+from airhockey.evaluator.runs.records import Job
 from airhockey.learning.pgpe import training
 from airhockey.learning.pgpe.records import Iteration, Settings
 from airhockey.learning.pgpe.trainable import names_of, ranges, read

@@ -18,12 +18,12 @@ from airhockey.commands._tables import print_result
 from airhockey.envs.disturbances import available
 from airhockey.envs.editions import edition
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator import Options, RunResult, TaskResult, begin, evaluate, take_up
-from airhockey.evaluator.cluster import engine_of
+from airhockey.evaluator import Options, RunResult, TaskResult, begin, evaluate, resume
+from airhockey.evaluator.engines.cluster import engine_of
 from airhockey.evaluator.official import write_official
-from airhockey.evaluator.records import Order
-from airhockey.evaluator.report import task_results
-from airhockey.evaluator.store import RunFolder
+from airhockey.evaluator.results import task_results
+from airhockey.evaluator.runs.folder import RunFolder
+from airhockey.evaluator.runs.records import Order
 
 AGENT_FAILED = 3
 INTERRUPTED = 130
@@ -69,7 +69,7 @@ def _open_run(given: Mapping[str, Any], typed: set[str]) -> RunFolder:
     if given["resume"]:
         fields = {"environments" if name in ("task", "robot", "env") else name for name in typed}
         asked = {name: getattr(options, name) for name in sorted(fields) if name in Options.__struct_fields__}
-        return take_up(Path(given["out"]), asked)
+        return resume(Path(given["out"]), asked)
     if given["out"] is not None:
         return begin(options, Path(given["out"]))
     return begin(options, _new_folder(given, options))

@@ -9,9 +9,9 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from airhockey.viewing.filming import check_film
 from airhockey.viewing.library import Library, open_library
 from airhockey.viewing.video import FilmOptions, OnFrame, write_film
+from airhockey.viewing.video_writer import check_film
 
 INTERRUPTED = 130
 _NOTES = 5

@@ -6,9 +6,9 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from airhockey.evaluator.games.match import GameResult, MatchManifest, MatchResult
-from airhockey.evaluator.games.records import Event
-from airhockey.evaluator.games.standings import Standings
+from airhockey.evaluator.judging.standings import Standings
+from airhockey.evaluator.match import GameResult, MatchManifest, MatchResult
+from airhockey.evaluator.runs.game_records import Event
 
 _WIDTH = 130
 _FEW = 8  # events of a game that are shown when several games were played

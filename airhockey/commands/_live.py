@@ -12,8 +12,8 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from airhockey.evaluator.games.records import GameRecord, Status
-from airhockey.evaluator.games.watch import live_games
+from airhockey.evaluator.play.watchdog import live_games
+from airhockey.evaluator.runs.game_records import GameRecord, Status
 
 STARTING = "starting; the first time on a machine, the simulator is compiled"
 CONTROL_PERIOD = 0.02  # [s]

@@ -15,17 +15,17 @@ from airhockey.commands._game_tables import print_match
 from airhockey.commands._isolation import say_what_is_not_protected
 from airhockey.commands._live import games_live
 from airhockey.envs.disturbances import available
-from airhockey.evaluator.cluster import engine_of
-from airhockey.evaluator.games.folder import GameFolder
-from airhockey.evaluator.games.match import (
+from airhockey.evaluator.engines.cluster import engine_of
+from airhockey.evaluator.match import (
     MatchManifest,
     MatchOptions,
     MatchResult,
     begin_match,
     play_match,
-    take_up_match,
+    resume_match,
 )
-from airhockey.evaluator.games.records import GameOptions
+from airhockey.evaluator.runs.game_folder import GameFolder
+from airhockey.evaluator.runs.game_records import GameOptions
 
 GAME_OPTIONS = ("steps", "disturbances", "clock", "variant", "isolate", "patience")
 _OWN = ("games", "seed", "swap_sides", *GAME_OPTIONS)
@@ -107,7 +107,7 @@ def _open(given: Mapping[str, Any], typed: set[str]) -> GameFolder[MatchManifest
         game=game_options_of(given),
     )
     if given["resume"]:
-        return take_up_match(Path(given["out"]), repeated(options, options.game, (*sides, *_OWN), typed | sides))
+        return resume_match(Path(given["out"]), repeated(options, options.game, (*sides, *_OWN), typed | sides))
     if given["out"] is not None:
         return begin_match(options, Path(given["out"]))
     name = f"match-{Path(options.home).name}-{Path(options.away).name}-s{options.seed}"

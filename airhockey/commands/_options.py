@@ -8,7 +8,7 @@ import rich_click as click
 from click.core import ParameterSource
 
 from airhockey.commands._isolation import ISOLATION_OPTIONS
-from airhockey.evaluator.workers import ONE_THREAD
+from airhockey.evaluator.engines.workers import ONE_THREAD
 
 cluster_option = click.option(
     "--cluster", metavar="ADDRESS|local:N", help="Play on a Dask cluster, or on N Dask workers of this machine."

@@ -9,7 +9,7 @@ import rich_click as click
 
 from airhockey.commands._evaluation import cpus
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.engines import engine_for
+from airhockey.evaluator.engines.engine import engine_for
 from airhockey.learning.pgpe.folder import read_iterations, read_training
 from airhockey.learning.pgpe.plots import draw_sweep, plot_run, save
 from airhockey.learning.pgpe.sweep import sweep

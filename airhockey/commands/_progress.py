@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
-from airhockey.evaluator.records import EpisodeRecord, Options
+from airhockey.evaluator.runs.records import EpisodeRecord, Options
 
 OnEpisode = Callable[[EpisodeRecord], None]
 STARTING = "starting; the first time on a machine, the simulator is compiled"

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator.disk import replace_file
+from airhockey.evaluator.runs.disk import replace_file
 from airhockey.reporting import words
 from airhockey.reporting.document import report
 from airhockey.reporting.leaderboard import write_site

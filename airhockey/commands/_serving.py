@@ -11,7 +11,7 @@ import click
 from airhockey.agents import AGENTS
 from airhockey.commands._isolation import isolation_of, say_what_is_not_protected
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.workers import ONE_THREAD
+from airhockey.evaluator.engines.workers import ONE_THREAD
 
 
 def run(given: Mapping[str, Any]) -> None:

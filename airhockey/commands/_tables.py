@@ -6,9 +6,9 @@ from rich.table import Table
 
 from airhockey.envs.editions import Deployability, edition
 from airhockey.evaluator import RunResult, TaskResult
-from airhockey.evaluator.judging import wilson_interval
-from airhockey.evaluator.report import failure_reasons, task_results
-from airhockey.evaluator.store import RunFolder
+from airhockey.evaluator.judging.tasks import wilson_interval
+from airhockey.evaluator.results import failure_reasons, task_results
+from airhockey.evaluator.runs.folder import RunFolder
 
 OFFICIAL_EPISODES = 1000  # what the limits of the deployability classes are made for
 

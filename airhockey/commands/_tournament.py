@@ -17,20 +17,20 @@ from airhockey.commands._isolation import say_what_is_not_protected
 from airhockey.commands._live import games_live
 from airhockey.commands._match import GAME_OPTIONS, game_options_of, new_folder, repeated
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.cluster import engine_of
-from airhockey.evaluator.engines import Engine
-from airhockey.evaluator.games.folder import GameFolder
-from airhockey.evaluator.games.records import GameRecord
-from airhockey.evaluator.games.schedule import Entry, TournamentOptions, entry_of, schedule, with_replacements
-from airhockey.evaluator.games.standings import Standings, as_csv
-from airhockey.evaluator.games.tournament import (
+from airhockey.evaluator.engines.cluster import engine_of
+from airhockey.evaluator.engines.engine import Engine
+from airhockey.evaluator.isolation.modes import REMOTE
+from airhockey.evaluator.judging.standings import Standings, as_csv
+from airhockey.evaluator.runs.game_folder import GameFolder
+from airhockey.evaluator.runs.game_records import GameRecord
+from airhockey.evaluator.schedule import Entry, TournamentOptions, entry_of, schedule, with_replacements
+from airhockey.evaluator.tournament import (
     TournamentManifest,
     begin_tournament,
     play_tournament,
     read_standings,
-    take_up_tournament,
+    resume_tournament,
 )
-from airhockey.evaluator.isolation.modes import REMOTE
 
 _OWN = ("seed", *GAME_OPTIONS)
 
@@ -111,7 +111,7 @@ def _open(given: Mapping[str, Any], typed: set[str]) -> GameFolder[TournamentMan
     if given["resume"]:
         asked = repeated(options, options.game, _OWN, typed)
         phases = given["phases"] if "phases" in typed else None
-        return take_up_tournament(Path(given["out"]), entries, asked, phases, replacements)
+        return resume_tournament(Path(given["out"]), entries, asked, phases, replacements)
     options = msgspec.structs.replace(options, entries=with_replacements(entries, replacements))
     out = Path(given["out"]) if given["out"] is not None else new_folder(f"tournament-s{options.seed}")
     return begin_tournament(options, out)

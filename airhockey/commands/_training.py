@@ -13,12 +13,12 @@ from airhockey.commands._evaluation import INTERRUPTED, RUNS, cpus, from_anywher
 from airhockey.commands._training_progress import training_progress
 from airhockey.envs.disturbances import available
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.engines import engine_for
+from airhockey.evaluator.engines.engine import engine_for
 from airhockey.learning.pgpe.folder import PARAMETERS, TrainingFolder
 from airhockey.learning.pgpe.records import Settings
 from airhockey.learning.pgpe.search import DivergedError
 from airhockey.learning.pgpe.trainable import names_of, ranges, read, replaced
-from airhockey.learning.pgpe.training import begin, take_up, train
+from airhockey.learning.pgpe.training import begin, resume, train
 
 DIVERGED = 4
 _START = {"init", "overrides", "asked", "fix", "only", "sigma"}
@@ -76,7 +76,7 @@ def _open_run(given: Mapping[str, Any], typed: set[str]) -> TrainingFolder:
             again = ", ".join(sorted(f"--{_OPTION.get(name, name)}" for name in typed & _START))
             raise ConfigurationError(f"a run that is resumed goes on from where it is: leave out {again}")
         asked = {name: _value(given, name) for name in sorted(fields & typed)}
-        return take_up(Path(given["out"]), asked)
+        return resume(Path(given["out"]), asked)
     parameters = replaced(thesis_parameters(given["init"]), _overrides(given["overrides"]))
     names = names_of(given["task"], given["asked"], given["fix"], given["only"])
     if not given["sigma"] > 0.0:

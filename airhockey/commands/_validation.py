@@ -9,7 +9,7 @@ import msgspec
 
 from airhockey.commands._isolation import isolation_of, say_what_is_not_protected
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.workers import ONE_THREAD
+from airhockey.evaluator.engines.workers import ONE_THREAD
 
 PROBLEMS = 3
 

@@ -36,7 +36,7 @@ def run_replay(given: Mapping[str, Any]) -> int:
     """Show recordings; gives the exit status."""
     from airhockey.commands._filming import say_what_is_missing
     from airhockey.viewing.library import open_library
-    from airhockey.viewing.show import RecordedShow
+    from airhockey.viewing.playback import RecordedShow
 
     library = open_library(given["run"])
     first = library.position(given["episode"]) if given["episode"] is not None else 0
@@ -46,17 +46,17 @@ def run_replay(given: Mapping[str, Any]) -> int:
 
 def run_watch(given: Mapping[str, Any]) -> int:
     """Show a live task or game; gives the exit status."""
-    from airhockey.evaluator.workers import ONE_THREAD
+    from airhockey.evaluator.engines.workers import ONE_THREAD
 
     os.environ.update(ONE_THREAD)  # before NumPy is imported: the players are single-threaded
-    from airhockey.viewing.show import Show
+    from airhockey.viewing.playback import Show
 
     show: Show = _game(given) if given["away"] is not None else _task(given)
     return _watch(show, given)
 
 
 def _watch(show: Any, given: Mapping[str, Any]) -> int:
-    from airhockey.viewing.studio import watch
+    from airhockey.viewing.viewer import watch
 
     def say(line: str) -> None:
         click.echo(line)
@@ -81,7 +81,7 @@ def _has_display() -> bool:
 def _task(given: Mapping[str, Any]) -> Any:
     from airhockey.commands._isolation import isolation_of, say_what_is_not_protected
     from airhockey.evaluator.checks import check_options
-    from airhockey.evaluator.records import Options
+    from airhockey.evaluator.runs.records import Options
     from airhockey.viewing.live import LiveTask
 
     agent = _agent(given["agent"])
@@ -102,7 +102,7 @@ def _task(given: Mapping[str, Any]) -> Any:
 def _game(given: Mapping[str, Any]) -> Any:
     from airhockey.commands._isolation import say_what_is_not_protected
     from airhockey.evaluator.checks import check_agent, check_game_options
-    from airhockey.evaluator.games.records import GameOptions
+    from airhockey.evaluator.runs.game_records import GameOptions
     from airhockey.viewing.live import LiveGame
 
     if given["env"] is not None:

@@ -10,10 +10,10 @@ from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.envs.editions import Edition, edition
 from airhockey.errors import ConfigurationError, unknown
-from airhockey.evaluator.episode import CLOCKS
-from airhockey.evaluator.games.records import VARIANTS, GameOptions
 from airhockey.evaluator.isolation.modes import REMOTE, choose, host_and_port
-from airhockey.evaluator.records import Options
+from airhockey.evaluator.play.episode import CLOCKS
+from airhockey.evaluator.runs.game_records import VARIANTS, GameOptions
+from airhockey.evaluator.runs.records import Options
 
 RULE_BASED = ("thesis", "thesis-final")  # agents whose numbers are in a file
 ORDERS = (1, 2, 3, 4, 5, -1, "none", "agent")

@@ -15,10 +15,10 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from airhockey.evaluator import trajectories
-from airhockey.evaluator.records import RunResult, TaskResult
-from airhockey.evaluator.report import task_results
-from airhockey.evaluator.store import TRAJECTORIES
+from airhockey.evaluator.results import task_results
+from airhockey.evaluator.runs import trajectories
+from airhockey.evaluator.runs.folder import TRAJECTORIES
+from airhockey.evaluator.runs.records import RunResult, TaskResult
 
 Transition = tuple[Any, Any, float, Any, bool, bool]
 

@@ -14,12 +14,12 @@ from airhockey.agents.packaging.metadata import METADATA, Metadata, interpolatio
 from airhockey.agents.packaging.packing import contents
 from airhockey.agents.submission import CONFIG, submission_config, submission_folder, wanted_order
 from airhockey.errors import ActionError, AirHockeyError, ConfigurationError
-from airhockey.evaluator.episode import agent_failures, describe
-from airhockey.evaluator.isolation.apart import Apart
 from airhockey.evaluator.isolation.build import build_agent
 from airhockey.evaluator.isolation.failures import AgentDied, AgentTimeout
+from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.modes import Mode
+from airhockey.evaluator.play.episode import agent_failures, describe
 
 STEP_LIMIT = 0.02
 """Beyond this the previous command is held in a game, and penalty points are due, in [s]."""
@@ -118,7 +118,7 @@ def try_out(agent: str, task: str, mode: Mode, limits: Limits, steps: int) -> Tr
     try:
         player = build_agent(agent, env, mode=mode, limits=limits, order=order)
         start, times = time.perf_counter() - began, list[float]()
-        clock = player.clock("cpu") if isinstance(player, Apart) else time.thread_time
+        clock = player.clock("cpu") if isinstance(player, AgentHandle) else time.thread_time
         player.episode_start()
         observation = env.reset(seed=0)
         half = observation.size // 2
@@ -138,7 +138,7 @@ def try_out(agent: str, task: str, mode: Mode, limits: Limits, steps: int) -> Tr
         where = f"{task}, step {step}" if step else f"{task}, loading"
         return Problem(where, describe(failure), _remedy(failure, printed, limits))
     finally:
-        if isinstance(player, Apart):
+        if isinstance(player, AgentHandle):
             player.close()
     rest = times[1:] or times
     return Trial(task, len(times), start, float(np.median(rest)), max(rest), times[0], longest_cpu)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from airhockey.envs import ENVIRONMENTS
 from airhockey.envs.disturbances import Disturbances
 from airhockey.envs.editions import Edition
-from airhockey.evaluator.judging import CLASSES, PHASES, worst_class
+from airhockey.evaluator.judging.tasks import CLASSES, PHASES, worst_class
 from airhockey.reporting.results import OFFICIAL_EPISODES, Task
 
 

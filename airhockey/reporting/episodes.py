@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from airhockey.envs.kernel.constraints import MAX_END_EFFECTOR_Y, MIN_END_EFFECTOR_X
 from airhockey.envs.specs import IIWA
-from airhockey.reporting.hits import contacts, last_of_each
+from airhockey.evaluator.analysis.contacts import contacts, last_of_each
 
 Array = NDArray[np.float64]
 Table = NDArray[Any]

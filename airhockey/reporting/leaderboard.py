@@ -8,6 +8,7 @@ from pathlib import Path
 from airhockey import __version__
 from airhockey.envs.editions import available, edition
 from airhockey.errors import AirHockeyError, ConfigurationError
+from airhockey.evaluator.runs.reader import MANIFESTS, Match, Nothing, Run, Source, Tournament, open_source
 from airhockey.reporting import words
 from airhockey.reporting.document import report
 from airhockey.reporting.entries import boards, in_order, phases
@@ -19,7 +20,6 @@ from airhockey.reporting.sections.match import matches_section
 from airhockey.reporting.sections.summary import missing
 from airhockey.reporting.sections.tournament import standings_section
 from airhockey.reporting.site import SiteFolder, check_place, slug
-from airhockey.reporting.sources import MANIFESTS, Match, Nothing, Run, Source, Tournament, open_source
 
 Say = Callable[[str], None]
 INDEX = "index.html"

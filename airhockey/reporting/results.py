@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from airhockey.envs.editions import Edition, available, edition
-from airhockey.evaluator import judging
-from airhockey.evaluator.records import EpisodeRecord
+from airhockey.evaluator.judging import tasks as judging
+from airhockey.evaluator.runs.reader import Run
+from airhockey.evaluator.runs.records import EpisodeRecord
 from airhockey.reporting.episodes import TaskData
-from airhockey.reporting.sources import Run
 
 OFFICIAL_EPISODES = 1000
 """What the limits of the deployability classes are made for."""

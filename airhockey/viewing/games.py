@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from airhockey.envs.specs import CONTROL_PERIOD, IIWA
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.games.records import SIDES, Event, GameRecord
+from airhockey.evaluator.runs.game_records import SIDES, Event, GameRecord
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.recording import Moment, Recording
 from airhockey.viewing.saves import saves

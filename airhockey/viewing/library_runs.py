@@ -8,13 +8,13 @@ from airhockey.errors import ConfigurationError
 from airhockey.viewing.library import Entry, Library
 
 if TYPE_CHECKING:
-    from airhockey.evaluator.records import EpisodeRecord, Manifest
+    from airhockey.evaluator.runs.records import EpisodeRecord, Manifest
     from airhockey.viewing.recording import Recording
 
 
 def add_run(library: Library) -> None:
     """Add the episodes of a run folder, if it is one."""
-    from airhockey.evaluator.store import TRAJECTORIES, read_journal
+    from airhockey.evaluator.runs.folder import TRAJECTORIES, read_journal
 
     path = library.path
     merged, journal = path / TRAJECTORIES, path / "journal.jsonl"
@@ -39,7 +39,7 @@ def add_run(library: Library) -> None:
 
 
 def _manifest(library: Library) -> "Manifest | None":
-    from airhockey.evaluator.store import read_manifest
+    from airhockey.evaluator.runs.folder import read_manifest
 
     try:
         return read_manifest(library.path)
@@ -51,7 +51,7 @@ def _manifest(library: Library) -> "Manifest | None":
 def _records(library: Library, file: Path) -> "list[EpisodeRecord]":
     import msgspec
 
-    from airhockey.evaluator import trajectories
+    from airhockey.evaluator.runs import trajectories
 
     try:
         return trajectories.read_records(file)
@@ -66,7 +66,7 @@ def _place(manifest: "Manifest | None", env: str) -> tuple[int, str]:
 
 
 def _loader(name: str, file: Path, record: "EpisodeRecord", player: str) -> "Callable[[], Recording]":
-    from airhockey.evaluator import trajectories
+    from airhockey.evaluator.runs import trajectories
     from airhockey.viewing.episodes import Outcome, episode_recording
 
     def load() -> "Recording":

@@ -10,21 +10,21 @@ from numpy.typing import NDArray
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.errors import AirHockeyError
-from airhockey.evaluator import seeding
-from airhockey.evaluator.episode import agent_failures, describe
-from airhockey.evaluator.games.play import GamePlay
-from airhockey.evaluator.games.player import GamePlayer
-from airhockey.evaluator.games.records import SIDES, GameJob, GameOptions
-from airhockey.evaluator.games.watch import Watch
-from airhockey.evaluator.isolation.apart import Apart
-from airhockey.evaluator.player import Player, Setting
-from airhockey.evaluator.records import Options
+from airhockey.evaluator.isolation.handle import AgentHandle
+from airhockey.evaluator.play import seeding
+from airhockey.evaluator.play.episode import agent_failures, describe
+from airhockey.evaluator.play.episode_player import Player, Setting
+from airhockey.evaluator.play.game import GamePlay
+from airhockey.evaluator.play.game_player import GamePlayer
+from airhockey.evaluator.play.watchdog import Watch
+from airhockey.evaluator.runs.game_records import SIDES, GameJob, GameOptions
+from airhockey.evaluator.runs.records import Options
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.episodes import ACHIEVED
 from airhockey.viewing.games import LOOKED_AT, NEWS_STEPS, news_of, told
 from airhockey.viewing.marks import TARGETS, Mark, path, target
-from airhockey.viewing.show import predicted_path
-from airhockey.viewing.stage import Stage
+from airhockey.viewing.playback import predicted_path
+from airhockey.viewing.scene_view import Stage
 
 Array = NDArray[np.float64]
 AHEAD = 0.15
@@ -42,7 +42,7 @@ class OpenPlayer(Player):
         """As before an episode of a run."""
         seed = seeding.seed_of(self.options.seed, setting.name, index, seeding.AGENT)
         seeding.seed_global_generators(seed)
-        if isinstance(setting.agent, Apart):
+        if isinstance(setting.agent, AgentHandle):
             setting.agent.seed(seed)
 
 

@@ -54,10 +54,10 @@ def build_agent(
 
         return RemoteAgent(agent, env.env_info, order, limits.patience)
     if mode == "none":
-        from airhockey.evaluator.isolation.workshop import build_with_compatibility
+        from airhockey.evaluator.isolation.build_local import build_with_compatibility
 
         return build_with_compatibility(agent, env.env_info if env_info is None else dict(env_info), agent_id, **kwargs)
-    from airhockey.evaluator.isolation.host import IsolatedAgent
+    from airhockey.evaluator.isolation.agent_client import IsolatedAgent
     from airhockey.evaluator.isolation.launch import plain, sandboxed
 
     folder = submission_folder(Path(agent).expanduser()) if is_submission(agent) else None

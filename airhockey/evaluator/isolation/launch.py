@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import airhockey
+from airhockey.evaluator.engines.workers import ONE_THREAD
 from airhockey.evaluator.isolation.limits import Limits
-from airhockey.evaluator.workers import ONE_THREAD
 
 BWRAP = "bwrap"
 SUBMISSION = "/submission"
@@ -119,7 +119,7 @@ def is_root() -> bool:
 
 
 def _python() -> list[str]:
-    return [sys.executable, "-P", "-m", "airhockey.evaluator.isolation.guest"]
+    return [sys.executable, "-P", "-m", "airhockey.evaluator.isolation.agent_process"]
 
 
 def _namespaces() -> list[str]:

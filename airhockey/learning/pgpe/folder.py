@@ -17,7 +17,7 @@ import msgspec
 from airhockey.agents.parameters import convert
 from airhockey.agents.thesis.parameters import ThesisParameters
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.disk import JSON, begin_folder, disk_errors, lock_folder, replace_file, write_record
+from airhockey.evaluator.runs.disk import JSON, begin_folder, disk_errors, lock_folder, replace_file, write_record
 from airhockey.learning.pgpe.records import Iteration, Manifest
 from airhockey.learning.pgpe.trainable import as_yaml, replaced
 

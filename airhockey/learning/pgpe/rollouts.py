@@ -8,8 +8,8 @@ import numpy as np
 from airhockey.agents.base import AgentBase
 from airhockey.agents.parameters import convert
 from airhockey.agents.thesis.parameters import ThesisParameters
-from airhockey.evaluator import seeding
-from airhockey.evaluator.episode import agent_failures, describe
+from airhockey.evaluator.play import seeding
+from airhockey.evaluator.play.episode import agent_failures, describe
 from airhockey.learning.pgpe.records import Manifest, Outcome, RolloutJob
 from airhockey.learning.pgpe.stage import Stage, environments_of
 from airhockey.learning.pgpe.trainable import bounds, replaced

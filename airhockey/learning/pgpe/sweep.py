@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.errors import AirHockeyError
-from airhockey.evaluator.engines import InProcess, Lost, Processes
+from airhockey.evaluator.engines.engine import InProcess, JobFailed, Processes
 from airhockey.learning.pgpe.records import Manifest, Outcome, RolloutJob
 from airhockey.learning.pgpe.rollouts import Rollouts
 from airhockey.learning.pgpe.trainable import ranges
@@ -66,8 +66,8 @@ def sweep(
     outcomes: list[dict[int, Outcome]] = [{} for _ in values]
     player = Rollouts(msgspec.structs.replace(manifest, settings=settings))
     for job, outcome in (engine or InProcess()).run(player, jobs):
-        if isinstance(outcome, Lost) or outcome.error is not None:
-            why = outcome.reason if isinstance(outcome, Lost) else outcome.error
+        if isinstance(outcome, JobFailed) or outcome.error is not None:
+            why = outcome.reason if isinstance(outcome, JobFailed) else outcome.error
             raise AirHockeyError(f"the player failed with {name} = {values[job.candidate]:g}: {why}")
         outcomes[job.candidate][job.episode] = outcome
     return [_point(value, [one[k] for k in range(episodes)]) for value, one in zip(values, outcomes, strict=True)]

@@ -16,7 +16,7 @@ from airhockey.agents.thesis.parameters import ThesisParameters
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import AirHockeyError, ConfigurationError
 from airhockey.evaluator.checks import check_versions
-from airhockey.evaluator.engines import InProcess, Lost, Processes, Shift
+from airhockey.evaluator.engines.engine import InProcess, JobFailed, Processes, Shift
 from airhockey.learning.pgpe.folder import TrainingFolder, read_training
 from airhockey.learning.pgpe.hyperpolicy import Hyperpolicy
 from airhockey.learning.pgpe.penalty_budget import PenaltyBudget
@@ -77,7 +77,7 @@ def check(settings: Settings) -> None:
             raise ConfigurationError(f"{name} starts at {value:g}, but must be from {low:g} to {high:g}")
 
 
-def take_up(path: Path, asked: Mapping[str, Any] | None = None) -> TrainingFolder:
+def resume(path: Path, asked: Mapping[str, Any] | None = None) -> TrainingFolder:
     """Take up a run that was interrupted, or let a finished one go on.
 
     Args:
@@ -114,7 +114,7 @@ def train(
     The search itself is not stored: it is made again from the journal, by asking and telling what was told.
 
     Args:
-        folder: From `begin` or `take_up`; it is closed afterwards.
+        folder: From `begin` or `resume`; it is closed afterwards.
         engine: Where episodes are played; here, one by one, if not given.
         on_episode: Called with every outcome as it comes.
         on_iteration: Called with every iteration that is finished.
@@ -158,7 +158,7 @@ class _Stand:
         outcomes: dict[tuple[int, int], Outcome] = {}
         with contextlib.closing(self._shift.run(jobs)) as results:
             for job, result in results:
-                outcome = Outcome(error=result.reason) if isinstance(result, Lost) else result
+                outcome = Outcome(error=result.reason) if isinstance(result, JobFailed) else result
                 outcomes[job.candidate, job.episode] = outcome
                 if self._on_episode is not None:
                     self._on_episode(outcome)

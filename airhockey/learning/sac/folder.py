@@ -22,7 +22,7 @@ import yaml
 from airhockey import envs
 from airhockey.agents.atacom.network import Network
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.disk import begin_folder, disk_errors, lock_folder, replace_file
+from airhockey.evaluator.runs.disk import begin_folder, disk_errors, lock_folder, replace_file
 from airhockey.learning.sac.plots import LOG
 from airhockey.learning.sac.records import Line, Manifest, Settings
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from airhockey.evaluator.judging import CLASSES, wilson_interval
+from airhockey.evaluator.judging.tasks import CLASSES, wilson_interval
 from airhockey.reporting import words
 from airhockey.reporting.blocks import Row, badge, figure, figures, paragraphs, section, table
 from airhockey.reporting.draw.axes import Scale

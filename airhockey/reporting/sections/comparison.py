@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import msgspec
 
-from airhockey.evaluator.judging import wilson_interval
+from airhockey.evaluator.judging.tasks import wilson_interval
 from airhockey.reporting import statistics, words
 from airhockey.reporting.blocks import figure, figures, paragraphs, section, table, tables
 from airhockey.reporting.draw.axes import Scale

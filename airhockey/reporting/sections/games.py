@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from airhockey.evaluator.games.records import AWAY, HOME, SIDES, Event, GameRecord, PlayerResult, Side
+from airhockey.evaluator.analysis.shots import OUTCOMES, FilmData, Shot
+from airhockey.evaluator.runs.game_records import AWAY, HOME, SIDES, Event, GameRecord, PlayerResult, Side
 from airhockey.reporting import words
 from airhockey.reporting.blocks import Row, badge, details, figure, figures, paragraphs, table, wide
 from airhockey.reporting.draw.table_map import arrows, cells, density_cells, table_map
 from airhockey.reporting.draw.timeline import SHOWN, timeline
-from airhockey.reporting.films import OUTCOMES, FilmData, Shot
 from airhockey.reporting.markup import Markup, element, joined
 
 _MOST_SHOTS = 150  # of each outcome that are drawn

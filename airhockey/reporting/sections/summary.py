@@ -8,14 +8,14 @@ import msgspec
 
 from airhockey.envs.disturbances import Disturbances
 from airhockey.envs.editions import edition
-from airhockey.evaluator.judging import PHASES
-from airhockey.evaluator.judging import score as phase_score
+from airhockey.evaluator.judging.tasks import PHASES
+from airhockey.evaluator.judging.tasks import score as phase_score
+from airhockey.evaluator.runs.reader import Match, Nothing, Run, Source, Tournament, short_name
 from airhockey.reporting import words
 from airhockey.reporting.blocks import Row, badge, details, facts, paragraphs, section, table
 from airhockey.reporting.markup import Child, Markup, element, joined
 from airhockey.reporting.results import OFFICIAL_EPISODES, Task
 from airhockey.reporting.sections.quantities import FEW, kinds_of, one_below_another, quantities, side_by_side
-from airhockey.reporting.sources import Match, Nothing, Run, Source, Tournament, short_name
 
 
 def summary(tasks: Sequence[Task]) -> Markup:

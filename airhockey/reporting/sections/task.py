@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from airhockey.envs.specs import CONTROL_PERIOD
-from airhockey.evaluator.judging import wilson_interval
+from airhockey.evaluator.judging.tasks import wilson_interval
 from airhockey.reporting import words
 from airhockey.reporting.blocks import figure, figures, paragraphs, section, table
 from airhockey.reporting.draw.distribution import Series, histogram, log_edges, round_edges, rows_of

@@ -1,0 +1,248 @@
+"""The evaluator's side: an object with an agent's interface, whose agent lives in another process.
+
+Everything that comes from there is data: an action is numbers of a checked shape, a message is JSON. What an agent does wrong
+is raised here as its failure, and its process is then gone.
+"""
+
+import contextlib
+import os
+import select
+import shutil
+import signal
+import subprocess
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from airhockey.errors import ActionError
+from airhockey.evaluator.isolation import channel
+from airhockey.evaluator.isolation.channel import Memory
+from airhockey.evaluator.isolation.failures import AgentDied, AgentError, AgentRaised, AgentTimeout
+from airhockey.evaluator.isolation.handle import AgentHandle
+from airhockey.evaluator.isolation.launch import Launch
+from airhockey.evaluator.isolation.limits import Limits
+from airhockey.evaluator.isolation.output import Output, printable
+from airhockey.evaluator.isolation.pids import first_inside, only_child
+from airhockey.evaluator.isolation.shared_core import SharedCore
+
+Array = NDArray[np.float64]
+
+
+class IsolatedAgent(AgentHandle):
+    """An agent in a process of its own.
+
+    Args:
+        launch: How its process is started.
+        job: What `airhockey.evaluator.isolation.build_local.build_here` needs.
+        limits: What it may use, and how long anybody waits.
+        seed: Of the generators that it may draw from while it is built.
+
+    Attributes:
+        interpolation_order: What the agent wants.
+        phase: For logs.
+        next_action, preprocessors: Of the official interface; preprocessors are applied over there.
+
+    Raises:
+        AgentError: It could not be built.
+    """
+
+    _process: subprocess.Popen[bytes]
+    _memory: Memory
+    _requests: int = -1
+    _replies: int = -1
+    _output: Output
+    _core: SharedCore
+
+    def __init__(
+        self, launch: Launch, job: dict[str, Any], limits: Limits, seed: np.random.SeedSequence | None = None
+    ) -> None:
+        self.phase, self.next_action, self.preprocessors = "isolated", None, ()
+        self.interpolation_order: int | None = 3
+        self._limits, self._launch = limits, launch
+        self._seed: np.random.SeedSequence | None = None
+        self._pid = 0
+        self._start()
+        try:
+            self._meet()
+            self._memory.write_text(
+                job | {"limits": asdict(limits), "user": launch.user, "counted": launch.counted, "seed": _words(seed)}
+            )
+            self._ask(channel.BUILD, limits.start)
+            order = self._memory.read_text().get("interpolation_order", 3)
+            self.interpolation_order = order if order is None or isinstance(order, int) else 3
+        except BaseException:
+            self.close()
+            raise
+
+    @property
+    def printed(self) -> str:
+        """The end of what the agent wrote to its standard output and error."""
+        return self._output.tail
+
+    def seed(self, sequence: np.random.SeedSequence) -> None:
+        """Seed the generators that it draws from, when the next episode begins."""
+        self._seed = sequence
+
+    def episode_start(self) -> None:
+        """A serve begins."""
+        self._memory.write_text({"seed": _words(self._seed)})
+        self._seed = None
+        self._ask(channel.EPISODE, self._limits.patience)
+
+    def draw_action(self, observation: Array) -> Array:
+        """The next command, in any shape that the agent likes.
+
+        Raises:
+            ActionError: It is not an array of numbers.
+            AgentError: The agent raised, died, or did not answer within the patience.
+        """
+        self._core.follow()
+        self._memory.write_observation(observation)
+        word = self._ask(channel.ACT, self._limits.patience)
+        if word == channel.BAD_ACTION:
+            raise ActionError(_clean(self._memory.read_text()))
+        return self._memory.read_action()
+
+    def clock(self, kind: str) -> Callable[[], float]:
+        """Wall time as it passes here, or the CPU time of its process."""
+        return self.cpu_clock if kind == "cpu" else time.perf_counter
+
+    def cpu_clock(self) -> float:
+        """CPU time that its process has used, in [s]; 0 once it has ended."""
+        try:
+            return time.clock_gettime((~self._pid << 3) | 2)  # what clock_getcpuclockid gives
+        except OSError:
+            return 0.0
+
+    def stop(self) -> None:
+        """Tell the agent that it is over, and end its process."""
+        try:
+            self._ask(channel.STOP, self._limits.patience)
+        finally:
+            self.close()
+
+    def close(self) -> None:
+        """End its process and everything that it started. May be called twice."""
+        process = self._process
+        with contextlib.suppress(OSError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        for descriptor in (self._requests, self._replies):
+            if descriptor >= 0:
+                os.close(descriptor)
+        self._requests = self._replies = -1
+        self._output.close()
+        for folder in self._launch.rubbish:
+            shutil.rmtree(folder, ignore_errors=True)
+
+    def __del__(self) -> None:
+        with contextlib.suppress(AttributeError, OSError):
+            self.close()
+
+    def _start(self) -> None:
+        """Start the process, with its pipes."""
+        shared = channel.new_memory()
+        their_requests, self._requests = os.pipe()
+        self._replies, their_replies = os.pipe()
+        output, their_output = os.pipe()
+        self._output = Output(output)
+        status, their_status = os.pipe()
+        theirs = (their_requests, their_replies, shared)
+        command = [*self._launch.command, *map(str, theirs)]
+        in_sandbox = self._launch.counted
+        if in_sandbox:
+            command[1:1] = ["--info-fd", str(their_status)]
+        try:
+            self._process = subprocess.Popen(
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=their_output,
+                stderr=their_output,
+                env=self._launch.environment,
+                cwd=self._launch.folder,
+                pass_fds=(*theirs, their_status),
+                start_new_session=True,
+            )
+            self._memory = Memory(shared)
+        finally:
+            for descriptor in (*theirs, their_output, their_status):
+                os.close(descriptor)
+        self._first = first_inside(status) if in_sandbox else None
+        os.close(status)
+        self._poll = select.poll()
+        self._poll.register(self._replies, select.POLLIN)
+        self._poll.register(output, select.POLLIN)
+
+    def _meet(self) -> None:
+        """Wait until it runs; nothing of the agent is loaded yet, so its process is the only one in there."""
+        if self._hear(self._limits.start) != channel.HELLO:
+            raise self._obituary()
+        self._pid = self._process.pid if self._first is None else only_child(self._first)
+        self._core = SharedCore(self._pid)
+
+    def _ask(self, word: bytes, patience: float) -> bytes:
+        """Say a word and wait for the reply; whoever gives none is stopped."""
+        if self._requests < 0:
+            raise AgentDied("its process has ended")
+        try:
+            os.write(self._requests, word)
+        except BrokenPipeError:
+            raise self._obituary() from None
+        reply = self._hear(patience)
+        if reply == channel.RAISED:
+            raise AgentRaised(_clean(self._memory.read_text()))
+        if not reply:
+            raise self._obituary()
+        if reply not in (channel.DONE, channel.BAD_ACTION):
+            self.close()
+            raise AgentError("it wrote to the evaluator's pipe")
+        return reply
+
+    def _hear(self, patience: float) -> bytes:
+        """A word of the agent's, or nothing where its process has ended."""
+        deadline = time.monotonic() + patience
+        while True:
+            ready = dict(self._poll.poll(max(deadline - time.monotonic(), 0.0) * 1e3))
+            if self._replies in ready:
+                break
+            if time.monotonic() >= deadline:
+                self.close()
+                raise AgentTimeout(f"it did not answer within {patience:g} s and was stopped")
+            if not self._output.drain():
+                self._poll.unregister(self._output.descriptor)
+        return os.read(self._replies, 1)
+
+    def _obituary(self) -> AgentDied:
+        """How it died, with its last words."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(1.0)
+        code = self._process.poll()
+        self._output.drain_all()
+        said = [line.strip() for line in self.printed.splitlines() if line.strip()]
+        self.close()
+        last = f"; its last words: {printable(said[-1])[:200]}" if said else ""
+        return AgentDied(f"its process ended ({_how(code)}){last}")
+
+
+def _how(code: int | None) -> str:
+    if code is None:
+        return "or closed its pipe"
+    number = -code if code < 0 else code - 128
+    if number > 0:
+        with contextlib.suppress(ValueError):
+            return f"signal {signal.Signals(number).name}"
+    return f"exit status {code}"
+
+
+def _words(seed: np.random.SeedSequence | None) -> list[int] | None:
+    return None if seed is None else seed.generate_state(4).tolist()
+
+
+def _clean(message: Any) -> str:
+    """A message of the agent's as one printable line."""
+    what = message.get("what") if isinstance(message, dict) else None
+    return " ".join(printable(what if isinstance(what, str) else "it gave no reason").split())[:1000]

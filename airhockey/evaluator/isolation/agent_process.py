@@ -1,0 +1,149 @@
+"""The agent's side: a child process that builds one agent and answers for it.
+
+    python -m airhockey.evaluator.isolation.agent_process REQUESTS REPLIES MEMORY      (file descriptors)
+
+It limits itself and gives up what rights it has before it loads anything of the agent.
+"""
+
+import contextlib
+import ctypes
+import os
+import random
+import signal
+import sys
+from typing import Any
+
+import numpy as np
+
+from airhockey.evaluator.isolation import channel
+from airhockey.evaluator.isolation.channel import Memory
+from airhockey.evaluator.isolation.limits import Limits
+
+_PR_SET_PDEATHSIG, _PR_SET_DUMPABLE = 1, 4
+
+
+def main() -> None:
+    """Serve until the host hangs up."""
+    requests, replies, descriptor = (int(argument) for argument in sys.argv[1:4])
+    memory = Memory(descriptor)
+    os.close(descriptor)
+    for pipe in (requests, replies):
+        os.set_inheritable(pipe, False)
+    server = Server(memory)
+    os.write(replies, channel.HELLO)
+    while word := os.read(requests, 1):
+        os.write(replies, server.answer(word))
+        if word == channel.STOP:
+            break
+    os._exit(0)  # threads of the agent do not keep it alive
+
+
+class Server:
+    """Answers the host's words."""
+
+    def __init__(self, memory: Memory) -> None:
+        self._memory = memory
+        self._agent: Any = None
+        self._size = 0
+
+    def answer(self, word: bytes) -> bytes:
+        """Do what a word asks for; gives the word to reply."""
+        try:
+            if word == channel.ACT:
+                return self._act()
+            if word == channel.BUILD:
+                self._build(self._memory.read_text())
+            elif word == channel.EPISODE:
+                self._begin_episode(self._memory.read_text())
+            elif word == channel.STOP:
+                getattr(self._agent, "stop", lambda: None)()
+        except BaseException as failure:
+            self._memory.write_text(_told(failure))
+            return channel.RAISED
+        return channel.DONE
+
+    def _build(self, job: dict[str, Any]) -> None:
+        """Give up every right, then load the agent."""
+        restrict(job)
+        from airhockey.evaluator.isolation.build_local import build_here
+
+        seed(job["seed"])
+        self._agent, self._size = build_here(job)
+        self._preprocessors = tuple(getattr(self._agent, "preprocessors", ()))
+        order = getattr(self._agent, "interpolation_order", 3)
+        self._memory.write_text({"interpolation_order": order if order is None else int(order)})
+
+    def _begin_episode(self, job: dict[str, Any]) -> None:
+        seed(job["seed"])
+        self._agent.episode_start()
+        self._preprocessors = tuple(getattr(self._agent, "preprocessors", ()))
+
+    def _act(self) -> bytes:
+        observation: Any = self._memory.read_observation(self._size)
+        for preprocessor in self._preprocessors:
+            observation = preprocessor(observation)
+        action = self._agent.draw_action(observation)
+        try:
+            values = np.asarray(action)
+            problem = _problem(action, values)
+        except (ValueError, TypeError) as error:
+            problem = f"the action is not an array of numbers: {error}"
+        if problem is not None:
+            self._memory.write_text({"what": problem})
+            return channel.BAD_ACTION
+        self._memory.write_action(values.astype(np.float64))
+        return channel.DONE
+
+
+def _problem(action: Any, values: Any) -> str | None:
+    """Why an action cannot even be shown to the host."""
+    if values.dtype.kind not in "fiu":
+        return f"the action is of type {type(action).__name__} with dtype {values.dtype}; return a float array"
+    if values.ndim > channel.MAX_DIMENSIONS or values.size > channel.MAX_ACTION:
+        return f"the action has shape {values.shape}"
+    return None
+
+
+def _told(failure: BaseException) -> dict[str, str]:
+    from airhockey.evaluator.play.episode import describe
+
+    try:
+        what = describe(failure)
+    except BaseException:  # an exception whose text raises
+        what = type(failure).__name__
+    return {"what": what.encode("utf-8", "replace").decode()[:1000]}
+
+
+def seed(words: list[int] | None) -> None:
+    """Seed the generators that an agent may draw from without asking, as `airhockey.evaluator.play.seeding` does."""
+    if words is None:
+        return
+    np.random.seed(np.array(words, dtype=np.uint32))
+    random.seed(words[0])
+    torch = sys.modules.get("torch")
+    if torch is not None:
+        torch.manual_seed(words[0])
+
+
+def restrict(job: dict[str, Any]) -> None:
+    """Die with the host, be the first to go when memory runs out, keep to the limits, and be nobody.
+
+    Args:
+        job: `limits`; `user`, a user's number to become or None; `counted`, whether processes are counted.
+    """
+    libc = ctypes.CDLL(None)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the host's business
+    with contextlib.suppress(OSError), open("/proc/self/oom_score_adj", "w") as score:
+        score.write("1000")
+    Limits(**job["limits"]).apply(count_processes=job["counted"])
+    user = job["user"]
+    if user is not None:
+        os.setgroups([])
+        os.setresgid(user, user, user)
+        os.setresuid(user, user, user)
+        libc.prctl(_PR_SET_DUMPABLE, 1, 0, 0, 0)  # lost with the user
+    libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)  # after the user: it is lost with that too
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,126 @@
+"""A tournament: every entry plays every other one at home and away, in one phase or two."""
+
+import datetime
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from airhockey import envs
+from airhockey.envs.disturbances import Disturbances, load_disturbances
+from airhockey.errors import ConfigurationError
+from airhockey.evaluator.checks import check_versions
+from airhockey.evaluator.engines.engine import Engine
+from airhockey.evaluator.judging.standings import Standings, standings, write_standings
+from airhockey.evaluator.match import play_games
+from airhockey.evaluator.runs.game_folder import GameFolder, check_repeated, read_game_manifest, read_games
+from airhockey.evaluator.runs.game_records import GameRecord
+from airhockey.evaluator.schedule import Entry, TournamentOptions, check_tournament, extended, schedule
+
+TOURNAMENT = "tournament.json"
+
+
+class TournamentManifest(msgspec.Struct, frozen=True, kw_only=True):
+    """`tournament.json`."""
+
+    options: TournamentOptions
+    profile: Disturbances
+    versions: dict[str, str]
+    created: str
+    format: int = 1
+
+
+OnStandings = Callable[[GameRecord, Standings], None]
+
+
+def begin_tournament(options: TournamentOptions, path: Path) -> GameFolder[TournamentManifest]:
+    """Begin a tournament; nothing is written when anything about it is wrong.
+
+    Raises:
+        ConfigurationError: An option has no meaning, or the folder holds something or cannot be written.
+    """
+    check_tournament(options)
+    manifest = TournamentManifest(
+        options=options,
+        profile=load_disturbances(options.game.disturbances),
+        versions=envs.versions(),
+        created=datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
+    )
+    return GameFolder.create(path, TOURNAMENT, manifest)
+
+
+def resume_tournament(
+    path: Path,
+    added: Iterable[Entry] = (),
+    asked: Mapping[str, Any] | None = None,
+    phases: int | None = None,
+    replacements: Mapping[str, str] | None = None,
+) -> GameFolder[TournamentManifest]:
+    """Take up a tournament that was interrupted, or extend it: only the missing games will be played.
+
+    Args:
+        path: Its folder.
+        added: More entries; those that it has already change nothing.
+        asked: Options that the user repeated; they must be the tournament's.
+        phases: 2 adds a second phase to a tournament of one.
+        replacements: Name -> agent that plays for it in phase 2, as long as none of its games there is played.
+
+    Raises:
+        ConfigurationError: There is none, an option is not valid, or the software has changed.
+    """
+    folder = GameFolder.open(path, TOURNAMENT, TournamentManifest)
+    manifest = folder.manifest
+    try:
+        check_versions(manifest.versions, path)
+        check_repeated(path, asked or {}, manifest.options, manifest.profile)
+        options = extended(manifest.options, tuple(added), phases, replacements or {})
+        if options != manifest.options:
+            check_tournament(options)
+            _check_played(folder.records, options)
+            folder.change(msgspec.structs.replace(manifest, options=options))
+    except ConfigurationError:
+        folder.close()
+        raise
+    return folder
+
+
+def play_tournament(
+    folder: GameFolder[TournamentManifest], engine: Engine | None = None, on_standings: OnStandings | None = None
+) -> Standings:
+    """Play the missing games; the standings are on the disk after every one.
+
+    Args:
+        folder: From `begin_tournament` or `resume_tournament`; it is closed afterwards.
+        engine: Where the games are played; here, one after the other, if not given.
+        on_standings: Called with every record as it comes, and the standings after it.
+    """
+    manifest = folder.manifest
+    jobs = schedule(manifest.options)
+    names = [entry.name for entry in manifest.options.entries]
+
+    def on_game(record: GameRecord) -> None:
+        table = write_standings(folder.path, names, jobs, folder.records)
+        if on_standings is not None:
+            on_standings(record, table)
+
+    with folder:
+        play_games(folder, jobs, manifest.options.game, manifest.profile, engine, on_game)
+        return write_standings(folder.path, names, jobs, folder.records)
+
+
+def read_standings(path: Path) -> tuple[TournamentManifest, Standings]:
+    """The standings of a tournament from its folder, finished or not, without playing."""
+    manifest = read_game_manifest(path, TOURNAMENT, TournamentManifest)
+    names = [entry.name for entry in manifest.options.entries]
+    return manifest, standings(names, schedule(manifest.options), read_games(path))
+
+
+def _check_played(records: Iterable[GameRecord], options: TournamentOptions) -> None:
+    """A game that was played stays what it was; raises `ConfigurationError`."""
+    jobs = {job.key: job for job in schedule(options)}
+    for record in records:
+        job = jobs[record.job.key]
+        if (job.home_agent, job.away_agent) != (record.job.home_agent, record.job.away_agent):
+            name = job.home if job.home_agent != record.job.home_agent else job.away
+            raise ConfigurationError(f"{name!r} has played games of phase 2 already: it cannot be replaced any more")

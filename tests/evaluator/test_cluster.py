@@ -7,9 +7,9 @@ import engine_functions
 import pytest
 
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator import cluster
-from airhockey.evaluator.cluster import Cluster, engine_of
-from airhockey.evaluator.engines import InProcess, Lost, Processes
+from airhockey.evaluator.engines import cluster
+from airhockey.evaluator.engines.cluster import Cluster, engine_of
+from airhockey.evaluator.engines.engine import InProcess, JobFailed, Processes
 
 
 def results(function: Any, jobs: Any) -> dict[Any, Any]:
@@ -17,7 +17,7 @@ def results(function: Any, jobs: Any) -> dict[Any, Any]:
 
 
 def test_jobs_give_results_and_one_that_kills_its_workers_is_lost() -> None:
-    lost = Lost("the worker process died 3 times over it")
+    lost = JobFailed("the worker process died 3 times over it")
     assert results(engine_functions.die_on_three, range(12)) == {n: n for n in range(12)} | {3: lost}
 
 

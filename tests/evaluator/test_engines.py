@@ -5,7 +5,7 @@ import engine_functions
 import pytest
 
 from airhockey.errors import AirHockeyError
-from airhockey.evaluator.engines import InProcess, Lost, Processes, engine_for
+from airhockey.evaluator.engines.engine import InProcess, JobFailed, Processes, engine_for
 
 
 def results(engine: Any, function: Any, jobs: Any) -> dict[Any, Any]:
@@ -30,7 +30,7 @@ def test_workers_are_single_threaded_and_leave_ctrl_c_to_the_parent() -> None:
 
 
 def test_a_job_that_kills_its_workers_is_lost_and_the_others_are_not() -> None:
-    lost = Lost("the worker process died 3 times over it (signal SIGKILL)")
+    lost = JobFailed("the worker process died 3 times over it (signal SIGKILL)")
     expected = {n: n for n in range(10)} | {3: lost}
     assert results(Processes(2), engine_functions.die_on_three, range(10)) == expected
 
@@ -54,7 +54,7 @@ def test_the_function_is_closed_at_the_end(engine: Any, tmp_path: Path) -> None:
 
 
 def test_workers_that_cannot_start_are_an_error_not_a_thousand_lost_jobs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("airhockey.evaluator.workers.get_context", lambda _: _NoUnpickling())
+    monkeypatch.setattr("airhockey.evaluator.engines.workers.get_context", lambda _: _NoUnpickling())
     with pytest.raises(AirHockeyError, match="do not start"):
         results(Processes(1), engine_functions.square, range(1000))
 

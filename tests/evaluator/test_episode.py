@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from airhockey import envs
-from airhockey.evaluator.episode import Recorder, play, violated_steps
-from airhockey.evaluator.records import Episode, Job
+from airhockey.evaluator.play.episode import Recorder, play, violated_steps
+from airhockey.evaluator.runs.records import Episode, Job
 
 ENV = envs.make("3dof-hit")
 SIZE = ENV.reset(seed=0).size

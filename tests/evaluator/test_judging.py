@@ -3,8 +3,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from airhockey.envs.editions import edition
-from airhockey.evaluator.judging import penalty, score, violated_episodes, wilson_interval, worst_class
-from airhockey.evaluator.records import EpisodeRecord, StepTime
+from airhockey.evaluator.judging.tasks import penalty, score, violated_episodes, wilson_interval, worst_class
+from airhockey.evaluator.runs.records import EpisodeRecord, StepTime
 
 RULES = edition("2023")
 

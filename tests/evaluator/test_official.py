@@ -8,8 +8,8 @@ import pytest
 
 from airhockey.evaluator import Options, RunResult, TaskResult, begin, evaluate
 from airhockey.evaluator.official import write_official
-from airhockey.evaluator.store import read_journal
-from airhockey.evaluator.trajectories import read_episodes
+from airhockey.evaluator.runs.folder import read_journal
+from airhockey.evaluator.runs.trajectories import read_episodes
 
 
 def test_the_official_files_say_what_was_stored(options: Options, tmp_path: Path) -> None:

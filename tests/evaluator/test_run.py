@@ -14,11 +14,11 @@ from outcomes import ENV, outcome, without_time
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator import Options, Processes, begin, evaluate, play_episode, take_up
-from airhockey.evaluator.player import Player
-from airhockey.evaluator.records import Job
-from airhockey.evaluator.store import RunFolder, read_journal
-from airhockey.evaluator.trajectories import read_episode
+from airhockey.evaluator import Options, Processes, begin, evaluate, play_episode, resume
+from airhockey.evaluator.play.episode_player import Player
+from airhockey.evaluator.runs.folder import RunFolder, read_journal
+from airhockey.evaluator.runs.records import Job
+from airhockey.evaluator.runs.trajectories import read_episode
 
 
 @pytest.fixture
@@ -68,10 +68,10 @@ def test_a_run_taken_up_in_the_middle(options: Options, one_job: Path, tmp_path:
     with pytest.raises(KeyboardInterrupt):
         evaluate(begin(options, tmp_path / "run"), None, stop_after_two)
     assert [record.index for record in read_journal(tmp_path / "run")] == [0, 1]
-    evaluate(take_up(tmp_path / "run"), Processes(2), lambda record: seen.append(record.index))
+    evaluate(resume(tmp_path / "run"), Processes(2), lambda record: seen.append(record.index))
     assert sorted(seen) == list(range(6))
     assert outcome(tmp_path / "run") == outcome(one_job)
-    result = evaluate(take_up(tmp_path / "run"), None, lambda record: seen.append(record.index))
+    result = evaluate(resume(tmp_path / "run"), None, lambda record: seen.append(record.index))
     assert len(seen) == 6  # a finished run is only reported
     assert msgspec.json.decode((tmp_path / "run" / "result.json").read_bytes()) == msgspec.to_builtins(result)
 
@@ -97,13 +97,13 @@ def test_killed_and_resumed(options: Options, tmp_path: Path) -> None:
 
 
 def test_another_run_is_not_taken_up(options: Options, one_job: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    take_up(one_job, {"seed": 3, "disturbances": "server"}).__exit__()
+    resume(one_job, {"seed": 3, "disturbances": "server"}).__exit__()
     for name, value in {"seed": 4, "episodes": 7, "clock": "cpu", "disturbances": "harsh", "agent": "hold"}.items():
         with pytest.raises(ConfigurationError, match=f"has {name}"):
-            take_up(one_job, {name: value})
+            resume(one_job, {name: value})
     monkeypatch.setattr("airhockey.envs.versions", lambda: {"mujoco": "5.0.0"})
     with pytest.raises(ConfigurationError, match=r"began with mujoco 4\.0\.\d+, but this is 5\.0\.0"):
-        take_up(one_job)
+        resume(one_job)
 
 
 @pytest.mark.parametrize(

@@ -5,11 +5,11 @@ import pytest
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator import store
-from airhockey.evaluator.player import failed
-from airhockey.evaluator.records import Episode, EpisodeRecord, Job, Manifest, Options
-from airhockey.evaluator.store import RunFolder, read_journal
-from airhockey.evaluator.trajectories import read_episode, read_episodes, read_steps
+from airhockey.evaluator.play.episode_player import failed
+from airhockey.evaluator.runs import folder as store
+from airhockey.evaluator.runs.folder import RunFolder, read_journal
+from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, Manifest, Options
+from airhockey.evaluator.runs.trajectories import read_episode, read_episodes, read_steps
 
 MANIFEST = Manifest(
     options=Options(environments=("7dof-hit",)), profile=load_disturbances("ideal"), versions={}, created="now"

@@ -14,7 +14,7 @@ import pytest
 
 from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator.engines import InProcess, Processes
+from airhockey.evaluator.engines.engine import InProcess, Processes
 from airhockey.learning.pgpe import training
 from airhockey.learning.pgpe.folder import read_iterations
 from airhockey.learning.pgpe.records import Outcome, RolloutJob, Settings
@@ -86,7 +86,7 @@ def test_a_run_taken_up_goes_on_as_if_nothing_had_happened(tmp_path, optimizer, 
     run(tmp_path / "parts", Bowl(), iterations=2, **others)
     with (tmp_path / "parts" / "journal.jsonl").open("ab") as journal:
         journal.write(b'{"iteration":2,"theta":[[0.0')  # what a kill in the middle of a line leaves
-    training.train(training.take_up(tmp_path / "parts", {"iterations": 6}), Bowl())
+    training.train(training.resume(tmp_path / "parts", {"iterations": 6}), Bowl())
     parts = read_iterations(tmp_path / "parts")
     assert [one.theta for one in parts] == [one.theta for one in whole]
     assert parts[-1].mean == whole[-1].mean and parts[-1].sigma == whole[-1].sigma
@@ -117,13 +117,13 @@ def test_a_journal_of_another_search_is_not_taken_up(tmp_path):
     manifest = (tmp_path / "train.json").read_text()
     (tmp_path / "train.json").write_text(manifest.replace('"seed": 0', '"seed": 1'))
     with pytest.raises(AirHockeyError, match="iteration 0 of the journal"):
-        training.train(training.take_up(tmp_path, {"iterations": 3}), Bowl())
+        training.train(training.resume(tmp_path, {"iterations": 3}), Bowl())
 
 
 def test_only_the_number_of_iterations_may_change(tmp_path):
     run(tmp_path, Bowl(), iterations=2)
     with pytest.raises(ConfigurationError, match="candidates 4, not 5"):
-        training.take_up(tmp_path, {"candidates": 5})
+        training.resume(tmp_path, {"candidates": 5})
 
 
 @pytest.mark.parametrize(
@@ -172,7 +172,7 @@ def test_same_seed_same_parameters_whatever_the_jobs_and_after_a_kill(tmp_path):
     os.kill(killed.pid, signal.SIGKILL)
     killed.wait()
     assert 1 <= len(read_iterations(tmp_path / "killed")) <= 3
-    training.train(training.take_up(tmp_path / "killed"), InProcess())
+    training.train(training.resume(tmp_path / "killed"), InProcess())
     assert last_mean(tmp_path / "killed") == last_mean(tmp_path / "one")
 
 

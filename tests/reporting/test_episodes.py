@@ -11,7 +11,7 @@ from airhockey.envs.kernel.kinematics import forward_kinematics
 from airhockey.envs.scene import robot_model
 from airhockey.envs.specs import PLANAR
 from airhockey.evaluator import Options, begin, evaluate
-from airhockey.evaluator.trajectories import read_episodes, write
+from airhockey.evaluator.runs.trajectories import read_episodes, write
 from airhockey.reporting import episodes as module
 from airhockey.reporting.episodes import read_task
 

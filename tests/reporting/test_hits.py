@@ -5,8 +5,8 @@ import pytest
 from numpy.typing import NDArray
 
 from airhockey.envs.specs import CONTROL_PERIOD, MALLET, PUCK, TABLE
-from airhockey.reporting.films import on_target
-from airhockey.reporting.hits import contacts, last_of_each
+from airhockey.evaluator.analysis.contacts import contacts, last_of_each
+from airhockey.evaluator.analysis.shots import on_target
 
 Array = NDArray[np.float64]
 REACH = PUCK.radius + MALLET.radius

@@ -12,12 +12,12 @@ from results import ENV, Results
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.records import EpisodeRecord, Manifest, Options
+from airhockey.evaluator.runs.reader import Run
+from airhockey.evaluator.runs.records import EpisodeRecord, Manifest, Options
 from airhockey.reporting import write_site
 from airhockey.reporting.entries import boards
 from airhockey.reporting.results import Task
 from airhockey.reporting.site import MARK, slug
-from airhockey.reporting.sources import Run
 
 HIT, DEFEND, PREPARE = "7dof-hit", "7dof-defend", "7dof-prepare"
 

@@ -11,19 +11,19 @@ import numpy as np
 import pytest
 from results import ENV, EPISODES, Results
 
-from airhockey.evaluator.games.film import write_film
-from airhockey.evaluator.games.records import Event, GameJob, GameRecord, PlayerResult
-from airhockey.evaluator.games.tournament import read_standings
-from airhockey.evaluator.judging import wilson_interval
-from airhockey.evaluator.records import Episode, EpisodeRecord, StepTime
-from airhockey.evaluator.report import report as evaluators_report
-from airhockey.evaluator.store import read_journal
-from airhockey.evaluator.trajectories import read_episodes, write
+from airhockey.evaluator.analysis.shots import read_game
+from airhockey.evaluator.judging.tasks import wilson_interval
+from airhockey.evaluator.results import report as evaluators_report
+from airhockey.evaluator.runs.folder import read_journal
+from airhockey.evaluator.runs.game_records import Event, GameJob, GameRecord, PlayerResult
+from airhockey.evaluator.runs.game_trajectories import write_film
+from airhockey.evaluator.runs.reader import Run, open_source
+from airhockey.evaluator.runs.records import Episode, EpisodeRecord, StepTime
+from airhockey.evaluator.runs.trajectories import read_episodes, write
+from airhockey.evaluator.tournament import read_standings
 from airhockey.reporting import report
-from airhockey.reporting.films import read_game
 from airhockey.reporting.results import Task
 from airhockey.reporting.sections.comparison import compare, same_seeds, sentence
-from airhockey.reporting.sources import Run, open_source
 
 
 class Tree(HTMLParser):

@@ -12,10 +12,10 @@ from results import ENV, EPISODES, Results
 
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options
-from airhockey.evaluator.run import begin
-from airhockey.evaluator.trajectories import read_episodes, write
+from airhockey.evaluator.evaluation import begin
+from airhockey.evaluator.runs.reader import Match, Nothing, Run, Tournament, open_source, short_name
+from airhockey.evaluator.runs.trajectories import read_episodes, write
 from airhockey.reporting import report
-from airhockey.reporting.sources import Match, Nothing, Run, Tournament, open_source, short_name
 
 Copy = Callable[..., Path]
 

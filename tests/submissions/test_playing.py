@@ -15,14 +15,14 @@ from airhockey.agents import build_agent as build_here
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options
-from airhockey.evaluator.games.player import Game, GamePlayer
-from airhockey.evaluator.games.records import GameJob, GameOptions
 from airhockey.evaluator.isolation import modes
 from airhockey.evaluator.isolation.build import build_agent
 from airhockey.evaluator.isolation.failures import AgentDied, AgentTimeout
 from airhockey.evaluator.isolation.serving import listen, serve
-from airhockey.evaluator.player import Player
-from airhockey.evaluator.records import Episode, Job
+from airhockey.evaluator.play.episode_player import Player
+from airhockey.evaluator.play.game_player import Game, GamePlayer
+from airhockey.evaluator.runs.game_records import GameJob, GameOptions
+from airhockey.evaluator.runs.records import Episode, Job
 
 ENV = "3dof-defend"
 

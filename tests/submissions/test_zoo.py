@@ -14,9 +14,9 @@ import pytest
 
 from airhockey import envs
 from airhockey.errors import ActionError, AirHockeyError, SimulationError
+from airhockey.evaluator.isolation.agent_client import IsolatedAgent
 from airhockey.evaluator.isolation.build import build_agent
 from airhockey.evaluator.isolation.failures import AgentDied, AgentError, AgentRaised, AgentTimeout
-from airhockey.evaluator.isolation.host import IsolatedAgent
 from airhockey.evaluator.isolation.limits import MIB, Limits
 
 MODES = ("process", "sandbox")
@@ -306,7 +306,7 @@ def own_processes() -> list[str]:
                 command = (entry / "cmdline").read_bytes()
             except OSError:
                 continue
-            if b"airhockey.evaluator.isolation.guest" in command:
+            if b"airhockey.evaluator.isolation.agent_process" in command:
                 found.append(entry.name)
     return found
 

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from airhockey import envs
 from airhockey.agents.hold import HoldAgent
 from airhockey.envs.disturbances import load_disturbances
-from airhockey.evaluator.games import play
-from airhockey.evaluator.games.film import read_film
-from airhockey.evaluator.games.play import GamePlay
-from airhockey.evaluator.games.player import Game, GamePlayer
-from airhockey.evaluator.games.records import Event, GameJob, GameOptions, GameRecord, PlayerResult
-from airhockey.evaluator.records import StepTime
+from airhockey.evaluator.play import game as play
+from airhockey.evaluator.play.game import GamePlay
+from airhockey.evaluator.play.game_player import Game, GamePlayer
+from airhockey.evaluator.runs.game_records import Event, GameJob, GameOptions, GameRecord, PlayerResult
+from airhockey.evaluator.runs.game_trajectories import read_film
+from airhockey.evaluator.runs.records import StepTime
 
 Array = NDArray[np.float64]
 JOB = GameJob("0", "h", "a", "h", "a", seed=1)

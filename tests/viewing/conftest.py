@@ -7,10 +7,10 @@ from games import play_one
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator import Options, begin, evaluate
-from airhockey.evaluator.games.folder import GameFolder
-from airhockey.evaluator.games.match import MATCH, MatchManifest, MatchOptions
-from airhockey.evaluator.games.records import GameOptions
+from airhockey.evaluator.match import MATCH, MatchManifest, MatchOptions
 from airhockey.evaluator.official import write_official
+from airhockey.evaluator.runs.game_folder import GameFolder
+from airhockey.evaluator.runs.game_records import GameOptions
 
 GAME_STEPS = 60
 

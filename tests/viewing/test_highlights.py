@@ -4,7 +4,7 @@ import numpy as np
 from games import JOB, side
 
 from airhockey.envs.specs import TABLE
-from airhockey.evaluator.games.records import Event, GameRecord
+from airhockey.evaluator.runs.game_records import Event, GameRecord
 from airhockey.viewing.games import WIDTH, game_recording
 from airhockey.viewing.highlights import frame_steps, highlight_spans
 from airhockey.viewing.recording import Moment

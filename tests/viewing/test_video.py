@@ -10,9 +10,9 @@ from command_line import Hockey
 from PIL import Image
 
 from airhockey.errors import MissingDependencyError
-from airhockey.evaluator.store import read_journal
+from airhockey.evaluator.runs.folder import read_journal
 from airhockey.viewing import offscreen
-from airhockey.viewing.filming import open_film
+from airhockey.viewing.video_writer import open_film
 
 SMALL = "--size 160x96 --quality fast --quiet"
 STEP = 0.02

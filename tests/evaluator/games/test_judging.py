@@ -5,9 +5,9 @@ import pytest
 from games import Clock, Stander, new_game, side
 
 from airhockey.envs.editions import edition
-from airhockey.evaluator.games.judging import PenaltyCount, game_class, penalty_limit, tally, winner
-from airhockey.evaluator.games.play import GamePlay
-from airhockey.evaluator.games.records import Variant
+from airhockey.evaluator.judging.games import PenaltyCount, game_class, penalty_limit, tally, winner
+from airhockey.evaluator.play.game import GamePlay
+from airhockey.evaluator.runs.game_records import Variant
 
 RULES = edition()
 WHOLE = 45000

@@ -8,14 +8,14 @@ from typing import Any
 import pytest
 from games import play_one
 
-from airhockey.evaluator.engines import Processes
-from airhockey.evaluator.games import watch
-from airhockey.evaluator.games.folder import read_games
-from airhockey.evaluator.games.match import MatchOptions, begin_match, play_match
-from airhockey.evaluator.games.records import GameOptions, Status
-from airhockey.evaluator.games.schedule import Entry, TournamentOptions
-from airhockey.evaluator.games.tournament import begin_tournament, play_tournament
-from airhockey.evaluator.games.watch import Watch, culprit, live_games
+from airhockey.evaluator.engines.engine import Processes
+from airhockey.evaluator.match import MatchOptions, begin_match, play_match
+from airhockey.evaluator.play import watchdog as watch
+from airhockey.evaluator.play.watchdog import Watch, culprit, live_games
+from airhockey.evaluator.runs.game_folder import read_games
+from airhockey.evaluator.runs.game_records import GameOptions, Status
+from airhockey.evaluator.schedule import Entry, TournamentOptions
+from airhockey.evaluator.tournament import begin_tournament, play_tournament
 
 Submission = Callable[..., str]
 

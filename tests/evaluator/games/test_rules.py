@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from games import Clock, Stander, new_game, placed, run, told
 
-from airhockey.evaluator.games.play import GamePlay
+from airhockey.evaluator.play.game import GamePlay
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from itertools import permutations
 import pytest
 
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.games.schedule import (
+from airhockey.evaluator.schedule import (
     Entry,
     TournamentOptions,
     check_tournament,

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 
 from games import side
 
-from airhockey.evaluator.games.records import Event, GameJob, GameRecord
-from airhockey.evaluator.games.standings import Row, as_csv, standings
+from airhockey.evaluator.judging.standings import Row, as_csv, standings
+from airhockey.evaluator.runs.game_records import Event, GameJob, GameRecord
 
 Result = tuple[str, str, int, int]
 

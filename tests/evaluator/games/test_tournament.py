@@ -16,13 +16,13 @@ import pytest
 from games import course
 
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.cluster import Cluster
-from airhockey.evaluator.engines import Processes
-from airhockey.evaluator.games.folder import read_games
-from airhockey.evaluator.games.records import GameOptions
-from airhockey.evaluator.games.schedule import Entry, TournamentOptions
-from airhockey.evaluator.games.standings import Standings
-from airhockey.evaluator.games.tournament import begin_tournament, play_tournament, read_standings, take_up_tournament
+from airhockey.evaluator.engines.cluster import Cluster
+from airhockey.evaluator.engines.engine import Processes
+from airhockey.evaluator.judging.standings import Standings
+from airhockey.evaluator.runs.game_folder import read_games
+from airhockey.evaluator.runs.game_records import GameOptions
+from airhockey.evaluator.schedule import Entry, TournamentOptions
+from airhockey.evaluator.tournament import begin_tournament, play_tournament, read_standings, resume_tournament
 from submissions import make_submission
 
 STEPS = 300
@@ -142,13 +142,13 @@ def test_a_second_phase_with_a_replacement_after_the_first_is_played(tmp_path: P
     options = TournamentOptions(entries=entries, game=GameOptions(steps=20))
     first = play_tournament(begin_tournament(options, tmp_path / "run"))
     assert [(row.name, row.points) for row in first.rows] == [("a", 6), ("b", 0)]
-    folder = take_up_tournament(tmp_path / "run", phases=2, replacements={"b": "hold"})
+    folder = resume_tournament(tmp_path / "run", phases=2, replacements={"b": "hold"})
     second = play_tournament(folder)
     assert [(row.name, row.points, row.forfeits) for row in second.rows] == [("a", 8, 0), ("b", 2, 2)]
     with pytest.raises(ConfigurationError, match="'b' has played games of phase 2"):
-        take_up_tournament(tmp_path / "run", replacements={"b": "thesis"})
+        resume_tournament(tmp_path / "run", replacements={"b": "thesis"})
     with pytest.raises(ConfigurationError, match="cannot be made 1"):
-        take_up_tournament(tmp_path / "run", phases=1)
+        resume_tournament(tmp_path / "run", phases=1)
     assert read_standings(tmp_path / "run")[1] == second  # and the refusals changed nothing
 
 
@@ -159,13 +159,13 @@ def test_an_extension_that_is_wrong_changes_nothing(tmp_path: Path) -> None:
     before = (tmp_path / "run" / "tournament.json").read_bytes()
     for wrong in (Entry(name="a", agent="thesis"), Entry(name="c", agent="nobody"), Entry(name="c-d", agent="hold")):
         with pytest.raises(ConfigurationError):
-            take_up_tournament(tmp_path / "run", [wrong])
+            resume_tournament(tmp_path / "run", [wrong])
     with pytest.raises(ConfigurationError, match="has steps 20, not 30"):
-        take_up_tournament(tmp_path / "run", (), {"steps": 30})
+        resume_tournament(tmp_path / "run", (), {"steps": 30})
     with pytest.raises(ConfigurationError, match="has no tournament"):
-        take_up_tournament(tmp_path)
+        resume_tournament(tmp_path)
     assert (tmp_path / "run" / "tournament.json").read_bytes() == before
-    with take_up_tournament(tmp_path / "run", entries) as folder:  # the same again is no extension
+    with resume_tournament(tmp_path / "run", entries) as folder:  # the same again is no extension
         assert folder.manifest.options == options
 
 

@@ -14,7 +14,7 @@ import mujoco
 
 from airhockey import envs
 from airhockey.envs.disturbances import load_disturbances
-from airhockey.evaluator.play.game_player import GamePlayer
+from airhockey.evaluator.play.game import GamePlayer
 from airhockey.evaluator.runs.game_records import GameJob, GameOptions, Status
 
 BLOCK = 500

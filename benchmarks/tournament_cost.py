@@ -20,7 +20,7 @@ from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator.engines.cluster import Cluster
 from airhockey.evaluator.engines.engine import Engine, InProcess, Processes
 from airhockey.evaluator.judging.standings import write_standings
-from airhockey.evaluator.play.game_player import Game, GamePlayer
+from airhockey.evaluator.play.game import Game, GamePlayer
 from airhockey.evaluator.runs.game_folder import GameFolder
 from airhockey.evaluator.runs.game_records import GameJob, GameOptions, GameRecord
 from airhockey.evaluator.schedule import Entry, TournamentOptions, schedule

@@ -21,6 +21,7 @@ def run(given: Mapping[str, Any]) -> None:
     from airhockey.agents.submission import is_submission, wanted_order
     from airhockey.evaluator.checks import check_agent
     from airhockey.evaluator.isolation.build import build_agent
+    from airhockey.evaluator.isolation.limits import Limits
     from airhockey.evaluator.isolation.serving import LOOPBACK, listen, serve
 
     name = given["agent"]
@@ -37,12 +38,12 @@ def run(given: Mapping[str, Any]) -> None:
             env,
             given["agent_id"],
             mode=isolation_of(agent_name, given["isolate"]),
-            patience=given["patience"],
-            order=order,
+            limits=Limits(patience=given["patience"]),
         )
-        wanted = getattr(agent, "interpolation_order", order)
-        if wanted != order:
-            raise ConfigurationError(f"the agent's interpolation order is {wanted}; name it in its agent_config.yml")
+        if agent.interpolation_order != order:
+            raise ConfigurationError(
+                f"the agent's interpolation order is {agent.interpolation_order}; name it in its agent_config.yml"
+            )
         host, port = waiting.getsockname()[:2]
         if host not in (LOOPBACK, "::1"):
             click.echo(f"hockey: warning: everybody who reaches {host}:{port} can play with this agent", err=True)
@@ -51,4 +52,4 @@ def run(given: Mapping[str, Any]) -> None:
         with contextlib.suppress(KeyboardInterrupt):
             serve(waiting, agent, size, given["games"])
         with contextlib.suppress(KeyboardInterrupt):
-            getattr(agent, "stop", lambda: None)()
+            agent.stop()

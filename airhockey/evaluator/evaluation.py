@@ -11,7 +11,7 @@ from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.checks import check_options, check_versions
 from airhockey.evaluator.engines.engine import Engine, InProcess, JobFailed
-from airhockey.evaluator.play.episode_player import Player, failed
+from airhockey.evaluator.play.episode import EpisodePlayer, failed
 from airhockey.evaluator.results import report
 from airhockey.evaluator.runs.folder import RunFolder, read_manifest
 from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, Manifest, Options, RunResult, TaskResult
@@ -71,7 +71,7 @@ def evaluate(
     """
     manifest = folder.manifest
     with folder:
-        results = (engine or InProcess()).run(Player(manifest.options, manifest.profile), _unplayed(folder))
+        results = (engine or InProcess()).run(EpisodePlayer(manifest.options, manifest.profile), _unplayed(folder))
         with contextlib.closing(results):
             for job, result in results:
                 episode = failed(job, result.reason) if isinstance(result, JobFailed) else result
@@ -91,7 +91,7 @@ def play_episode(options: Options, env: str, index: int) -> Episode:
         ConfigurationError: An option has no meaning.
     """
     check_options(options)
-    player = Player(options, load_disturbances(options.disturbances))
+    player = EpisodePlayer(options, load_disturbances(options.disturbances))
     try:
         return player(Job(env, index))
     finally:

@@ -15,7 +15,7 @@ from outcomes import ENV, outcome, without_time
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options, Processes, begin, evaluate, play_episode, resume
-from airhockey.evaluator.play.episode_player import Player
+from airhockey.evaluator.play.episode import EpisodePlayer
 from airhockey.evaluator.runs.folder import RunFolder, read_journal
 from airhockey.evaluator.runs.records import Job
 from airhockey.evaluator.runs.trajectories import read_episode
@@ -214,7 +214,7 @@ def test_a_workers_memory_has_a_bound(tmp_path: Path) -> None:
 
 def test_memory_does_not_grow_with_the_episodes() -> None:
     options = Options(environments=(ENV,), agent="hold", disturbances="server")
-    player = Player(options, load_disturbances("server"))
+    player = EpisodePlayer(options, load_disturbances("server"))
     for index in range(20):
         player(Job(ENV, index))
     before = memory("self", "VmRSS")

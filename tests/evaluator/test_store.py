@@ -5,7 +5,7 @@ import pytest
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator.play.episode_player import failed
+from airhockey.evaluator.play.episode import failed
 from airhockey.evaluator.runs import folder as store
 from airhockey.evaluator.runs.folder import RunFolder, read_journal
 from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, Manifest, Options

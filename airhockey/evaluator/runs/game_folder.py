@@ -20,7 +20,7 @@ import msgspec
 
 from airhockey.envs.disturbances import Disturbances, load_disturbances
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.play.game_player import Game
+from airhockey.evaluator.play.game import Game
 from airhockey.evaluator.runs.disk import JSON, begin_folder, disk_errors, lock_folder, replace_file, write_record
 from airhockey.evaluator.runs.game_records import GameRecord, file_name
 from airhockey.evaluator.runs.game_trajectories import write_film

@@ -176,7 +176,7 @@ def test_memory_is_flat_over_a_game() -> None:
         return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE") / 1e6
 
     from airhockey.envs.disturbances import load_disturbances
-    from airhockey.evaluator.play.game_player import GamePlayer
+    from airhockey.evaluator.play.game import GamePlayer
     from airhockey.evaluator.runs.game_records import GameJob
 
     play_one("hold", "hold", 50)

@@ -216,6 +216,18 @@ def test_parameters_that_are_not_finite_stop_the_run(tmp_path):
     folder.close()
 
 
+def test_a_run_goes_on_with_the_disturbances_that_it_began_with(tmp_path):
+    profile = tmp_path / "mine.yaml"
+    profile.write_text("profile: mine\npuck: {position: 0.01}\n")
+    settings = msgspec.structs.replace(SHORT, disturbances=str(profile))
+    SkillFolder.begin(settings, tmp_path / "run").close()
+    began_with = load_disturbances(str(profile))
+    profile.write_text("profile: mine\npuck: {position: 0.5}\n")
+    with SkillFolder.resume(tmp_path / "run") as folder:
+        assert folder.manifest.profile == began_with
+        assert Trainer(folder).env.unwrapped.environment.disturbances == began_with
+
+
 def test_other_software_cannot_go_on_with_a_run(finished):
     path, _ = finished
     manifest = (path / "train.json").read_text()

@@ -92,7 +92,7 @@ class Environment:
             rules.opponent == "figure_of_eight",
             visual,
         )
-        self.env_info = make_env_info(name, self.simulation, self.formats, self.edition, self.horizon)
+        self.env_info = make_env_info(name, self.simulation, self.edition, self.horizon)
         self.constraint_slices = constraint_slices(self.simulation.arm)
         self._referee = pack(_referee_rules(self.edition), new_game())
         self.game: Game = view(self._referee, Game)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from airhockey.envs.kernel import referee
+from airhockey.envs.tasks import verdicts
 from airhockey.evaluator.play.seat import Seat
 from airhockey.evaluator.runs.game_records import AWAY, HOME, SIDES, Event, Side
 
@@ -49,14 +49,14 @@ class EventLog:
         verdict = self._env.verdict
         x, y, _, speed_x, speed_y, _ = self._env.base_observation[:6]
         where = f"the puck was at ({x:+.3f}, {y:+.3f}) m with ({speed_x:+.2f}, {speed_y:+.2f}) m/s"
-        if verdict in (referee.GOAL_HOME, referee.GOAL_AWAY):
-            scorer = 0 if verdict == referee.GOAL_HOME else 1
+        if verdict in (verdicts.GOAL_HOME, verdicts.GOAL_AWAY):
+            scorer = 0 if verdict == verdicts.GOAL_HOME else 1
             self.goals[scorer] += 1
             self.events.append(Event(step=step, what="goal", who=SIDES[scorer], score=self.score, why=where))
-        elif verdict in (referee.FAULT_HOME, referee.FAULT_AWAY):
-            self._fault(0 if verdict == referee.FAULT_HOME else 1, step, where)
+        elif verdict in (verdicts.FAULT_HOME, verdicts.FAULT_AWAY):
+            self._fault(0 if verdict == verdicts.FAULT_HOME else 1, step, where)
         else:
-            what = "stuck" if verdict == referee.STUCK else "out"
+            what = "stuck" if verdict == verdicts.STUCK else "out"
             self.events.append(Event(step=step, what=what, score=self.score, why=where))
 
     def forfeits(self, step: int, seats: Sequence[Seat]) -> None:
@@ -67,7 +67,7 @@ class EventLog:
                 self.events.append(Event(step=step, what="forfeit", who=seat.side, score=self.score, why=why))
 
     def _fault(self, guilty: int, step: int, where: str) -> None:
-        since = float(self._env.simulation.game.timer[0])
+        since = float(self._env.game.timer[0])
         why = f"its side held the puck for {since:.2f} s; {where}"
         self.events.append(Event(step=step, what="fault", who=SIDES[guilty], score=self.score, why=why))
         faults = self._env.faults[guilty]

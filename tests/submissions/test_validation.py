@@ -99,3 +99,32 @@ def test_the_commands_from_an_idea_to_a_judged_entry(tmp_path: Path) -> None:
     assert again.returncode == 2 and len(again.stderr.splitlines()) == 1
     refused = hockey(tmp_path, "validate", "nothing")
     assert refused.returncode == 2
+
+
+PREPROCESSED = """
+import numpy as np
+
+class Agent:
+    def __init__(self, env_info):
+        self.joints = env_info["joint_pos_ids"]
+        self.preprocessors = [lambda observation: np.append(observation, 1.0)]
+
+    def episode_start(self):
+        pass
+
+    def draw_action(self, observation):
+        position = observation[self.joints] * observation[-1]
+        assert observation[-1] == 1.0, "the preprocessor's entry is missing"
+        return np.array([position, 0 * position])
+
+def build_agent(env_info, **kwargs):
+    return Agent(env_info)
+"""
+
+
+@pytest.mark.parametrize("task", ["3dof-defend", "tournament"])
+def test_an_agent_with_preprocessors_is_as_fit_as_the_evaluator_finds_it(tmp_path: Path, task: str) -> None:
+    (tmp_path / "agent_builder.py").write_text(PREPROCESSED)
+    outcome = try_out(str(tmp_path), task, "none", LIMITS, 5)
+    assert isinstance(outcome, Trial), outcome
+    assert outcome.steps == 5

@@ -18,7 +18,8 @@ import numpy as np
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator.engines.cluster import Cluster
-from airhockey.evaluator.engines.engine import Engine, InProcess, Processes
+from airhockey.evaluator.engines.engine import Engine, InProcess
+from airhockey.evaluator.engines.processes import Processes
 from airhockey.evaluator.judging.standings import write_standings
 from airhockey.evaluator.play.game import Game, GamePlayer
 from airhockey.evaluator.runs.game_records import GameJob, GameOptions, GameRecord

@@ -14,7 +14,8 @@ import pytest
 
 from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator.engines.engine import InProcess, Processes
+from airhockey.evaluator.engines.engine import InProcess
+from airhockey.evaluator.engines.processes import Processes
 from airhockey.evaluator.runs.journal import read_journal
 from airhockey.learning.pgpe import training
 from airhockey.learning.pgpe.records import Iteration, Outcome, RolloutJob, Settings
@@ -41,7 +42,7 @@ class Bowl(AbstractContextManager):
     def __init__(self, breaks_at=10**6, outcome=None):
         self.breaks_at, self.outcome, self.jobs = breaks_at, outcome, []
 
-    def shift(self, function):
+    def pool(self, function):
         return self
 
     def __exit__(self, *_):

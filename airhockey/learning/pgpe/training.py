@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from airhockey.agents.thesis.parameters import ThesisParameters
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator.engines.engine import InProcess, JobFailed, Processes, Shift
+from airhockey.evaluator.engines.engine import InProcess, JobFailed, Pool
+from airhockey.evaluator.engines.processes import Processes
 from airhockey.learning.pgpe.folder import TrainingFolder
 from airhockey.learning.pgpe.hyperpolicy import Hyperpolicy
 from airhockey.learning.pgpe.penalty_budget import PenaltyBudget
@@ -88,8 +89,8 @@ def train(
         KeyboardInterrupt: The user's; the finished iterations are kept.
     """
     settings = folder.manifest.options
-    with folder, (engine or InProcess()).shift(Rollouts(folder.manifest)) as shift:
-        stand = _Stand(shift, settings, on_episode)
+    with folder, (engine or InProcess()).pool(Rollouts(folder.manifest)) as pool:
+        stand = _Stand(pool, settings, on_episode)
         search, budget = search_of(settings), PenaltyBudget(settings.max_penalty, settings.multiplier_rate)
         for done in folder.records:
             theta = search.ask(_random(settings, done.iteration), settings.candidates)
@@ -108,8 +109,8 @@ def train(
 class _Stand:
     """Where the episodes of a run are played."""
 
-    def __init__(self, shift: Shift[RolloutJob, Outcome], settings: Settings, on_episode: OnEpisode | None) -> None:
-        self._shift, self._episodes, self._on_episode = shift, settings.episodes, on_episode
+    def __init__(self, pool: Pool[RolloutJob, Outcome], settings: Settings, on_episode: OnEpisode | None) -> None:
+        self._pool, self._episodes, self._on_episode = pool, settings.episodes, on_episode
 
     def play(self, number: int, theta: Array) -> list[list[Outcome]]:
         """The outcomes of each candidate's episodes, in order. θ of shape (N, d)."""
@@ -119,7 +120,7 @@ class _Stand:
             for episode in range(self._episodes)
         ]
         outcomes: dict[tuple[int, int], Outcome] = {}
-        with contextlib.closing(self._shift.run(jobs)) as results:
+        with contextlib.closing(self._pool.run(jobs)) as results:
             for job, result in results:
                 outcome = Outcome(error=result.reason) if isinstance(result, JobFailed) else result
                 outcomes[job.candidate, job.episode] = outcome

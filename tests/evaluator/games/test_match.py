@@ -11,7 +11,7 @@ from games import course, events_of, film, play_one
 
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.engines.cluster import Cluster
-from airhockey.evaluator.engines.engine import Processes
+from airhockey.evaluator.engines.processes import Processes
 from airhockey.evaluator.match import (
     MatchOptions,
     MatchResult,

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from games import play_one
 
-from airhockey.evaluator.engines.engine import Processes
+from airhockey.evaluator.engines.processes import Processes
 from airhockey.evaluator.match import MatchOptions, begin_match, play_match
 from airhockey.evaluator.play import watchdog as watch
 from airhockey.evaluator.play.watchdog import Watch, culprit, live_games

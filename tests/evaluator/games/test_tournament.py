@@ -17,7 +17,7 @@ from games import course
 
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.engines.cluster import Cluster
-from airhockey.evaluator.engines.engine import Processes
+from airhockey.evaluator.engines.processes import Processes
 from airhockey.evaluator.judging.standings import Standings
 from airhockey.evaluator.runs.game_records import GameOptions, GameRecord
 from airhockey.evaluator.runs.journal import read_journal

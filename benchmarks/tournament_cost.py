@@ -19,10 +19,11 @@ import numpy as np
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator.engines.cluster import Cluster
 from airhockey.evaluator.engines.engine import Engine, InProcess, Processes
+from airhockey.evaluator.entries import Entry
 from airhockey.evaluator.judging.standings import write_standings
 from airhockey.evaluator.play.game_player import Game, GamePlayer
 from airhockey.evaluator.runs.game_records import GameJob, GameOptions, GameRecord
-from airhockey.evaluator.schedule import Entry, TournamentOptions, schedule
+from airhockey.evaluator.schedule import TournamentOptions, schedule
 from airhockey.evaluator.tournament import TournamentFolder, begin_tournament
 
 WHOLE = 45000

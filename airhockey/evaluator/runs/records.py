@@ -36,7 +36,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     seed: int = 0
     disturbances: str = "ideal"
     interpolation_order: Order = "agent"
-    clock: Literal["wall", "cpu"] = "wall"
+    clock: Literal["wall", "cpu"] = "cpu"
     edition: str = "2023"
     isolate: Literal["none", "process", "sandbox"] = "none"
     patience: float = 60.0

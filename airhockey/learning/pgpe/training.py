@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 from airhockey.agents.thesis.parameters import ThesisParameters
 from airhockey.errors import AirHockeyError, ConfigurationError
 from airhockey.evaluator.engines.engine import InProcess, JobFailed, Processes, Shift
+from airhockey.learning.diverged import DivergedError
 from airhockey.learning.pgpe.folder import TrainingFolder
 from airhockey.learning.pgpe.hyperpolicy import Hyperpolicy
 from airhockey.learning.pgpe.penalty_budget import PenaltyBudget
 from airhockey.learning.pgpe.records import Iteration, Outcome, RolloutJob, Settings
 from airhockey.learning.pgpe.rollouts import Rollouts
 from airhockey.learning.pgpe.schedule import learning_rate
-from airhockey.learning.pgpe.search import DivergedError, Pgpe, Search, check_progress
+from airhockey.learning.pgpe.search import Pgpe, Search, check_progress
 from airhockey.learning.pgpe.trainable import bounds, plain
 
 Array = NDArray[np.float64]

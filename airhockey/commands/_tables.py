@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from msgspec.structs import astuple
 from rich import box
 from rich.console import Console
 from rich.table import Table
@@ -53,22 +52,29 @@ def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
     table.add_row("  95 % interval", *map(_interval, tasks))
     for name in dict.fromkeys(name for task in tasks for name in task.violations):
         table.add_row(f"episodes violating {name}", *(str(task.violations.get(name, "–")) for task in tasks))
+    table.add_row("episodes violating computation_time", *(str(_late_episodes(task.env, folder)) for task in tasks))
     table.add_row("penalty points", *(f"{task.penalty:g}" for task in tasks))
     table.add_row("deployability", *(task.deployability for task in tasks))
     if options.episodes != OFFICIAL_EPISODES:
         table.add_row(
             f"  at this rate, {OFFICIAL_EPISODES} episodes", *(_official_class(task, rules) for task in tasks)
         )
-    table.add_row(
-        f"draw_action mean / p99 / max in ms, {options.clock} clock",
-        *(" / ".join(f"{s * 1e3:.3f}" for s in astuple(task.computation_time)) for task in tasks),
-    )
+    for name in ("mean", "p99", "max"):
+        label = f"draw_action {name}, {options.clock} clock"
+        table.add_row(label, *(f"{getattr(task.computation_time, name) * 1e3:.3f} ms" for task in tasks))
     table.add_row("episodes failed by the agent", *(str(task.agent_errors) for task in tasks))
     return table
 
 
 def _official_class(task: TaskResult, rules: Deployability) -> str:
     return rules.class_of(task.penalty * OFFICIAL_EPISODES / task.episodes)
+
+
+def _late_episodes(env: str, folder: EpisodeFolder) -> int:
+    """The number of episodes that got penalty points for their computation time."""
+    rules = edition(folder.manifest.options.edition)
+    times = (record.computation_time for record in folder.records if record.env == env)
+    return sum(rules.time_penalty(time.max, time.mean) > 0.0 for time in times)
 
 
 def _interval(task: TaskResult) -> str:

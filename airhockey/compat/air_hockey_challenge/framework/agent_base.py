@@ -37,7 +37,7 @@ class AgentBase(Agent):
         """An episode begins."""
         raise NotImplementedError
 
-    def draw_action(self, observation: Array) -> Array:
+    def draw_action(self, observation: Array) -> Any:
         """The next command."""
         raise NotImplementedError
 

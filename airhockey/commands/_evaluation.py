@@ -76,7 +76,8 @@ def _open_run(given: Mapping[str, Any], typed: set[str]) -> RunFolder:
 
 
 def _options(given: Mapping[str, Any]) -> Options:
-    agent = from_anywhere(given["agent"], AGENTS)
+    default = "planner" if given["parameters"] is None else "thesis"
+    agent = from_anywhere(given["agent"] or default, AGENTS)
     return Options(
         environments=_environments(given),
         agent=agent,

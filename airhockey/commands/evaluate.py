@@ -23,9 +23,8 @@ from airhockey.commands._options import cluster_option, typed_options
 @click.option(
     "--agent",
     metavar="NAME|PATH|tcp://…",
-    default="thesis",
-    show_default=True,
-    help="One of `hockey agents`, the folder or archive of a submission, or tcp://HOST:PORT.",
+    help="One of `hockey agents`, the folder or archive of a submission, or tcp://HOST:PORT.  "
+    "[default: planner; thesis where --parameters are given]",
 )
 @click.option(
     "--parameters",
@@ -74,7 +73,7 @@ def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
     hockey evaluate --task prepare
     hockey evaluate --task all --disturbances server --clock cpu
     hockey evaluate --env 3dof-hit --agent submissions/my_agent --episodes 100 --jobs 1
-    hockey evaluate --resume --out runs/7dof-prepare-thesis-s0
+    hockey evaluate --resume --out runs/7dof-prepare-planner-s0
     """
     typed = typed_options(ctx, given)
     if given["env"] is not None and typed & {"task", "robot"}:

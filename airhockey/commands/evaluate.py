@@ -25,9 +25,8 @@ if TYPE_CHECKING:
 @click.option(
     "--agent",
     metavar="NAME|PATH|tcp://…",
-    default="thesis",
-    show_default=True,
-    help="One of `hockey agents`, the folder or archive of a submission, or tcp://HOST:PORT.",
+    help="One of `hockey agents`, the folder or archive of a submission, or tcp://HOST:PORT.  "
+    "[default: planner; thesis where --parameters are given]",
 )
 @click.option(
     "--parameters",
@@ -57,7 +56,7 @@ def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
     hockey evaluate --task prepare
     hockey evaluate --task all --disturbances server
     hockey evaluate --env 3dof-hit --agent submissions/my_agent --episodes 100 --jobs 1
-    hockey evaluate --resume --out runs/7dof-prepare-thesis-s0
+    hockey evaluate --resume --out runs/7dof-prepare-planner-s0
     """
     typed = common.typed_options(ctx, given)
     if given["env"] is not None and typed & {"task", "robot"}:
@@ -92,7 +91,8 @@ def _options(given: dict[str, Any]) -> "Options":
     from airhockey.evaluator import Options
     from airhockey.evaluator.isolation.modes import choose
 
-    agent, order = agent_of(given["agent"]), given["interpolation_order"]
+    default = "planner" if given["parameters"] is None else "thesis"  # the one that reads them
+    agent, order = agent_of(given["agent"] or default), given["interpolation_order"]
     return Options(
         environments=_environments(given),
         agent=agent,

@@ -24,9 +24,9 @@ def match(ctx: click.RichContext, /, **given: Any) -> None:
 
     \b
     hockey match thesis hold
-    hockey match baseline thesis --games 10 --swap-sides --disturbances server
+    hockey match planner thesis --games 10 --swap-sides --disturbances server
     hockey match thesis submissions/my_agent --steps 3000 --json
-    hockey match --resume --out runs/match-baseline-thesis-s0
+    hockey match --resume --out runs/match-planner-thesis-s0
     """
     typed = common.typed_options(ctx, given)
     if not given["resume"] and given["away"] is None:

@@ -20,8 +20,8 @@ def replay(**given: Any) -> None:
     quits.
 
     \b
-    hockey replay runs/7dof-prepare-thesis-s0 --episode 17
-    hockey replay runs/match-baseline-thesis-s0
+    hockey replay runs/7dof-prepare-planner-s0 --episode 17
+    hockey replay runs/match-planner-thesis-s0
     hockey replay runs/tournament-s0 --episode 1/alpha-beta
     hockey replay official/7dof-hit/dataset.pkl
     """

@@ -31,9 +31,9 @@ def report(**given: Any) -> None:
     For example:
 
     \b
-    hockey report runs/7dof-prepare-thesis-s0
-    hockey report runs/7dof-hit-thesis-s0 runs/7dof-hit-baseline-s0 -o hit.html
-    hockey report runs/match-baseline-thesis-s0 runs/tournament-s0 -o games.html
+    hockey report runs/7dof-prepare-planner-s0
+    hockey report runs/7dof-hit-thesis-s0 runs/7dof-hit-planner-s0 -o hit.html
+    hockey report runs/match-planner-thesis-s0 runs/tournament-s0 -o games.html
     """
     from airhockey.commands._progress import of_pages
     from airhockey.commands._session import say_notes

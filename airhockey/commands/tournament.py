@@ -33,7 +33,7 @@ def tournament(ctx: click.RichContext, /, **given: Any) -> None:
     entry failed games, and so lost them.
 
     \b
-    hockey tournament thesis baseline hold --steps 5000
+    hockey tournament thesis planner hold --steps 5000
     hockey tournament alpha=submissions/alpha beta=submissions/beta
     hockey tournament --resume --out runs/tournament-s0 --phases 2 --replace beta=submissions/beta2
     hockey tournament --resume --out runs/tournament-s0 thesis

@@ -53,10 +53,10 @@ def video(ctx: click.RichContext, /, **given: Any) -> None:
     are written over the picture. Needs the extra video: pip install 'airhockey[video]'.
 
     \b
-    hockey video runs/7dof-hit-baseline-s0 -o hit.mp4 --episodes 0,3,7
-    hockey video runs/match-baseline-thesis-s0 -o best.mp4 --highlights
-    hockey video runs/match-baseline-thesis-s0 -o still.png --at 12.5 --quality fine
-    hockey video runs/7dof-prepare-thesis-s0 -o prepare.gif --episodes 2 --size 480x270 --fps 20
+    hockey video runs/7dof-hit-planner-s0 -o hit.mp4 --episodes 0,3,7
+    hockey video runs/match-planner-thesis-s0 -o best.mp4 --highlights
+    hockey video runs/match-planner-thesis-s0 -o still.png --at 12.5 --quality fine
+    hockey video runs/7dof-prepare-planner-s0 -o prepare.gif --episodes 2 --size 480x270 --fps 20
     """
     still = given["out"].suffix.lower() == ".png"
     if still != (given["at"] is not None):

@@ -33,10 +33,10 @@ def watch(ctx: click.RichContext, /, **given: Any) -> None:
     episode; q in the terminal quits.
 
     \b
-    hockey watch baseline --task hit
-    hockey watch baseline thesis
+    hockey watch planner --task hit
+    hockey watch planner thesis
     hockey watch submissions/my_agent --env 7dof-prepare --disturbances server --episode 12
-    hockey watch baseline --no-browser --port 9000        then: ssh -L 9000:127.0.0.1:9000 …
+    hockey watch planner --no-browser --port 9000        then: ssh -L 9000:127.0.0.1:9000 …
     """
     common.typed_options(ctx, given)
     from airhockey.commands._session import agent_of, say_what_is_not_protected

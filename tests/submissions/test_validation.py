@@ -18,7 +18,7 @@ from airhockey.evaluator.validation import Trial, try_out, validate
 LIMITS = Limits(start=60.0, patience=20.0)
 
 
-@pytest.mark.parametrize("name", ["template", "thesis", "baseline"])
+@pytest.mark.parametrize("name", ["template", "thesis", "planner"])
 def test_our_submissions_are_packed_validated_and_played(name: str, tmp_path: Path) -> None:
     packed = pack(SUBMISSIONS / name, tmp_path / "packed.zip")
     verdict = validate(packed.path, "none", LIMITS, steps=4)
@@ -28,7 +28,7 @@ def test_our_submissions_are_packed_validated_and_played(name: str, tmp_path: Pa
 
 
 def test_our_packed_agent_plays_in_the_sandbox(sandbox: None, tmp_path: Path) -> None:
-    packed = pack(SUBMISSIONS / "baseline", tmp_path / "packed.zip")
+    packed = pack(SUBMISSIONS / "planner", tmp_path / "packed.zip")
     outcome = try_out(str(packed.path), "7dof-hit", "sandbox", LIMITS, 20)
     assert isinstance(outcome, Trial) and outcome.steps == 20 and outcome.start < 30.0
 

@@ -31,7 +31,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     """
 
     environments: tuple[str, ...]
-    agent: str = "thesis"
+    agent: str = "planner"
     episodes: int = 1000
     seed: int = 0
     disturbances: str = "ideal"

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from airhockey.agents.baseline.approach import FORESIGHT, approach
-from airhockey.agents.baseline.parameters import SmashParameters
-from airhockey.agents.baseline.shots import Shot
-from airhockey.agents.baseline.skill import Array, Situation
-from airhockey.agents.baseline.strike import Strike, run_up
+from airhockey.agents.planner.approach import FORESIGHT, approach
+from airhockey.agents.planner.parameters import SmashParameters
+from airhockey.agents.planner.shots import Shot
+from airhockey.agents.planner.skill import Array, Situation
+from airhockey.agents.planner.strike import Strike, run_up
 
 LARGEST_OFFSET = 0.03
 """How far the mallet may be from where the strike begins, in [m]."""

@@ -1,4 +1,4 @@
-"""The motions of the baseline's hit, its choice of skills, and whole episodes."""
+"""The motions of the planner's hit, its choice of skills, and whole episodes."""
 
 import numpy as np
 import pytest
@@ -6,11 +6,6 @@ import pytest
 from airhockey import envs
 from airhockey.agents import build_agent
 from airhockey.agents.base import AgentBase
-from airhockey.agents.baseline.approach import approach
-from airhockey.agents.baseline.parameters import SmashParameters, smash_parameters
-from airhockey.agents.baseline.skill import Situation
-from airhockey.agents.baseline.strike import Strike, run_up
-from airhockey.agents.baseline.tactics import choose
 from airhockey.agents.control.inverse_kinematics import inverse_kinematics
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics
@@ -18,6 +13,11 @@ from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.kalman import PuckEstimate
 from airhockey.agents.estimation.prediction import PuckPredictor
 from airhockey.agents.parameters import convert
+from airhockey.agents.planner.approach import approach
+from airhockey.agents.planner.parameters import SmashParameters, smash_parameters
+from airhockey.agents.planner.skill import Situation
+from airhockey.agents.planner.strike import Strike, run_up
+from airhockey.agents.planner.tactics import choose
 from airhockey.agents.table import CONTACT, to_robot, to_table
 from airhockey.envs.specs import IIWA, PLANAR, SOFT_LIMIT, RobotSpec
 from airhockey.errors import ConfigurationError
@@ -171,7 +171,7 @@ def play(env: envs.Environment, agent: AgentBase, seed: int) -> tuple[int, set[s
 @pytest.mark.parametrize("name", ["7dof-hit", "3dof-hit"])
 def test_it_scores_without_violations_and_the_same_way_every_time(name: str) -> None:
     env = envs.make(name)
-    agent = build_agent("baseline", env.env_info)
+    agent = build_agent("planner", env.env_info)
     results = [play(env, agent, seed) for seed in (0, 1, 2, 0)]
     assert [success for success, _, _ in results] == [1, 1, 1, 1]
     assert not set().union(*(violated for _, violated, _ in results))

@@ -10,16 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from airhockey.agents.baseline.driving import drive, go_to, round_the_puck
-from airhockey.agents.baseline.puck_physics import put_on_table
-from airhockey.agents.baseline.rest_watch import RestWatch
-from airhockey.agents.baseline.skill import Array, Situation
-from airhockey.agents.baseline.stroke import END, FOLLOW, LENGTH, PLACE, RETREAT, RUN_UP, START, coast, mallet_at
-from airhockey.agents.baseline.stroke_search import Goal, finish, search, value, worth
 from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.motion import puck_motion
 from airhockey.agents.parameters import load_parameters
+from airhockey.agents.planner.driving import drive, go_to, round_the_puck
+from airhockey.agents.planner.puck_physics import put_on_table
+from airhockey.agents.planner.rest_watch import RestWatch
+from airhockey.agents.planner.skill import Array, Situation
+from airhockey.agents.planner.stroke import END, FOLLOW, LENGTH, PLACE, RETREAT, RUN_UP, START, coast, mallet_at
+from airhockey.agents.planner.stroke_search import Goal, finish, search, value, worth
 from airhockey.agents.table import CONTACT, to_table
 
 

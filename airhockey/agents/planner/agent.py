@@ -1,4 +1,4 @@
-"""`baseline`: the planning player. It keeps track of the puck, chooses a skill and lets it act."""
+"""`planner`: the planning player. It keeps track of the puck, chooses a skill and lets it act."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -6,21 +6,21 @@ from typing import Any
 import numpy as np
 
 from airhockey.agents.base import AgentBase, Array
-from airhockey.agents.baseline.defend import Defend
-from airhockey.agents.baseline.drop import Drop
-from airhockey.agents.baseline.evidence import ShotRecord
-from airhockey.agents.baseline.prepare import Prepare
-from airhockey.agents.baseline.ready import Ready
-from airhockey.agents.baseline.repel import Repel
-from airhockey.agents.baseline.skill import Situation, Skill
-from airhockey.agents.baseline.smash import Smash
-from airhockey.agents.baseline.tactics import choose
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.kalman import Noise, PuckEstimate
 from airhockey.agents.estimation.prediction import PuckPredictor
 from airhockey.agents.estimation.watch import TableWatch
+from airhockey.agents.planner.defend import Defend
+from airhockey.agents.planner.drop import Drop
+from airhockey.agents.planner.evidence import ShotRecord
+from airhockey.agents.planner.prepare import Prepare
+from airhockey.agents.planner.ready import Ready
+from airhockey.agents.planner.repel import Repel
+from airhockey.agents.planner.skill import Situation, Skill
+from airhockey.agents.planner.smash import Smash
+from airhockey.agents.planner.tactics import choose
 from airhockey.agents.table import to_table
 
 WARM_UP_STEPS = 60
@@ -29,7 +29,7 @@ NOISE = Noise(drift_velocity=0.001, drift_share=0.002)
 """A slow puck is almost undisturbed: long averages are what makes a strike accurate."""
 
 
-class BaselineAgent(AgentBase):
+class PlannerAgent(AgentBase):
     """Filter, choice of a skill, and the skill."""
 
     interpolation_order = 3

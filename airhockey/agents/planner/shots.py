@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.baseline.aiming import after_strike, mirrored, strike_normal
-from airhockey.agents.baseline.flight import FLIGHT_STEP, arrives, fly, probability_positive, probability_within
-from airhockey.agents.baseline.rules import Rules
 from airhockey.agents.compiling import compiled
+from airhockey.agents.planner.aiming import after_strike, mirrored, strike_normal
+from airhockey.agents.planner.flight import FLIGHT_STEP, arrives, fly, probability_positive, probability_within
+from airhockey.agents.planner.rules import Rules
 
 Array = NDArray[np.float64]
 

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.baseline.contact import redirecting
 from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import advance
+from airhockey.agents.planner.contact import redirecting
 from airhockey.agents.table import CONTACT, HALF_LENGTH
 
 Array = NDArray[np.float64]

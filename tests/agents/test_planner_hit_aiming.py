@@ -1,20 +1,20 @@
-"""Aiming, shots and the opponent's swing of the baseline's hit: hand-computed cases and definitions."""
+"""Aiming, shots and the opponent's swing of the planner's hit: hand-computed cases and definitions."""
 
 import math
 
 import numpy as np
 import pytest
 
-from airhockey.agents.baseline.aiming import after_strike, mirrored, strike_normal
-from airhockey.agents.baseline.flight import FLIGHT_STEP, coast, fly
-from airhockey.agents.baseline.opponent import OpponentTrack, figure_of_eight
-from airhockey.agents.baseline.parameters import smash_parameters
-from airhockey.agents.baseline.rules import Rules, make_rules
-from airhockey.agents.baseline.shots import Shot, judge, room_speed, turned
-from airhockey.agents.baseline.strike import run_up
 from airhockey.agents.control.parameters import control_parameters
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.motion import advance
+from airhockey.agents.planner.aiming import after_strike, mirrored, strike_normal
+from airhockey.agents.planner.flight import FLIGHT_STEP, coast, fly
+from airhockey.agents.planner.opponent import OpponentTrack, figure_of_eight
+from airhockey.agents.planner.parameters import smash_parameters
+from airhockey.agents.planner.rules import Rules, make_rules
+from airhockey.agents.planner.shots import Shot, judge, room_speed, turned
+from airhockey.agents.planner.strike import run_up
 from airhockey.agents.table import CONTACT, HALF_LENGTH, to_robot
 from airhockey.envs.specs import IIWA
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.baseline.rules import Rules
 from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import advance_by, decay_over, pieces_of, slide_by
+from airhockey.agents.planner.rules import Rules
 
 Array = NDArray[np.float64]
 

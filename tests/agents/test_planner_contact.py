@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from airhockey import envs
-from airhockey.agents.baseline.contact import RESTITUTION, redirecting, resting_place
-from airhockey.agents.baseline.puck_physics import clearance, put_on_table, step
-from airhockey.agents.baseline.stroke import coast
 from airhockey.agents.estimation.motion import advance, puck_motion
+from airhockey.agents.planner.contact import RESTITUTION, redirecting, resting_place
+from airhockey.agents.planner.puck_physics import clearance, put_on_table, step
+from airhockey.agents.planner.stroke import coast
 from airhockey.agents.table import CONTACT, HOME
 from airhockey.envs.specs import IIWA, PUCK, TABLE
 

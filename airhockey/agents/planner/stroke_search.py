@@ -9,9 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.baseline.contact import RESTITUTION
-from airhockey.agents.baseline.puck_physics import put_on_table
-from airhockey.agents.baseline.stroke import (
+from airhockey.agents.compiling import compiled
+from airhockey.agents.planner.contact import RESTITUTION
+from airhockey.agents.planner.puck_physics import put_on_table
+from airhockey.agents.planner.stroke import (
     END,
     FOLLOW,
     LENGTH,
@@ -24,7 +25,6 @@ from airhockey.agents.baseline.stroke import (
     possible,
     puck_after,
 )
-from airhockey.agents.compiling import compiled
 from airhockey.agents.table import CONTACT
 
 Array = NDArray[np.float64]

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from skill_player import SkillPlayer
 
-from airhockey.agents.baseline.defend import Defend
-from airhockey.agents.baseline.interception import STEP, Reach, best_meeting, effort, meeting, puck_path
-from airhockey.agents.baseline.repel import Repel
 from airhockey.agents.control.cartesian import cubic
 from airhockey.agents.estimation.motion import puck_motion
+from airhockey.agents.planner.defend import Defend
+from airhockey.agents.planner.interception import STEP, Reach, best_meeting, effort, meeting, puck_path
+from airhockey.agents.planner.repel import Repel
 from airhockey.agents.table import CONTACT, HOME
 from airhockey.errors import ConfigurationError
 

@@ -13,18 +13,18 @@ from typing import Any
 
 import numpy as np
 
-from airhockey.agents.baseline.aiming import strike_normal
-from airhockey.agents.baseline.flight import coast
-from airhockey.agents.baseline.parameters import smash_parameters
-from airhockey.agents.baseline.roll_watch import RollWatch
-from airhockey.agents.baseline.rules import Rules, make_rules
-from airhockey.agents.baseline.shots import FORWARD, Shot, possible, turned
-from airhockey.agents.baseline.skill import Array, Situation
-from airhockey.agents.baseline.strike import Strike
-from airhockey.agents.baseline.striker import Striker
 from airhockey.agents.compiling import compiled
 from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.workspace import Workspace
+from airhockey.agents.planner.aiming import strike_normal
+from airhockey.agents.planner.flight import coast
+from airhockey.agents.planner.parameters import smash_parameters
+from airhockey.agents.planner.roll_watch import RollWatch
+from airhockey.agents.planner.rules import Rules, make_rules
+from airhockey.agents.planner.shots import FORWARD, Shot, possible, turned
+from airhockey.agents.planner.skill import Array, Situation
+from airhockey.agents.planner.strike import Strike
+from airhockey.agents.planner.striker import Striker
 from airhockey.agents.table import CONTACT
 
 PLACE = np.array([0.90, 0.085])

@@ -9,9 +9,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.baseline.puck_physics import TIME_STEP, clearance, step
 from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import bounce, slide
+from airhockey.agents.planner.puck_physics import TIME_STEP, clearance, step
 from airhockey.agents.table import CONTACT
 
 Array = NDArray[np.float64]

@@ -1,8 +1,8 @@
-"""Which skill plays: the table of what the baseline does when."""
+"""Which skill plays: the table of what the planner does when."""
 
 import numpy as np
 
-from airhockey.agents.baseline.skill import Situation
+from airhockey.agents.planner.skill import Situation
 from airhockey.agents.table import CONTACT, HALF_LENGTH
 
 SLOW = 0.15

@@ -1,4 +1,4 @@
-"""What can be tuned about the baseline's hit: `smash_iiwa.yaml` and `smash_planar.yaml` beside this module."""
+"""What can be tuned about the planner's hit: `smash_iiwa.yaml` and `smash_planar.yaml` beside this module."""
 
 from dataclasses import dataclass
 from functools import cache

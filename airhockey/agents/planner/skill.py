@@ -1,4 +1,4 @@
-"""What the skills of the baseline share: what they see (`Situation`) and what they are (`Skill`).
+"""What the skills of the planner share: what they see (`Situation`) and what they are (`Skill`).
 
 In the plane of the table everything is given in the table frame (`airhockey.agents.table`: origin at its centre, x towards the
 opponent), like the estimate of the puck. Only the joint controller thinks in the robot frame: `to_robot` is the way there.

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.baseline.parameters import SmashParameters
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.motion import puck_motion
+from airhockey.agents.planner.parameters import SmashParameters
 from airhockey.agents.table import CONTACT, HALF_GOAL, HALF_LENGTH, to_table
 from airhockey.envs.specs import PUCK
 

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from skill_player import SkillPlayer
 
-from airhockey.agents.baseline.driving import is_clear, round_the_puck
-from airhockey.agents.baseline.prepare import Prepare
-from airhockey.agents.baseline.rest_watch import RestWatch
-from airhockey.agents.baseline.stroke import (
+from airhockey.agents.estimation.motion import puck_motion
+from airhockey.agents.planner.driving import is_clear, round_the_puck
+from airhockey.agents.planner.prepare import Prepare
+from airhockey.agents.planner.rest_watch import RestWatch
+from airhockey.agents.planner.stroke import (
     END,
     FOLLOW,
     LENGTH,
@@ -21,8 +22,7 @@ from airhockey.agents.baseline.stroke import (
     possible,
     puck_after,
 )
-from airhockey.agents.baseline.stroke_search import draw, search, worth
-from airhockey.agents.estimation.motion import puck_motion
+from airhockey.agents.planner.stroke_search import draw, search, worth
 from airhockey.agents.table import CONTACT
 
 CONSTANTS = puck_motion().constants

@@ -5,14 +5,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.baseline.flight import FLIGHT_STEP, coast, state_at
-from airhockey.agents.baseline.opponent import OpponentTrack
-from airhockey.agents.baseline.parameters import SmashParameters
-from airhockey.agents.baseline.rules import Rules, make_rules
-from airhockey.agents.baseline.shots import Shot, judge
-from airhockey.agents.baseline.skill import Array, Situation
 from airhockey.agents.compiling import compiled
 from airhockey.agents.control.workspace import Workspace
+from airhockey.agents.planner.flight import FLIGHT_STEP, coast, state_at
+from airhockey.agents.planner.opponent import OpponentTrack
+from airhockey.agents.planner.parameters import SmashParameters
+from airhockey.agents.planner.rules import Rules, make_rules
+from airhockey.agents.planner.shots import Shot, judge
+from airhockey.agents.planner.skill import Array, Situation
 from airhockey.envs.compiled import pack
 
 FLIGHT = 2.0

@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from airhockey.agents.baseline.opponent import OpponentTrack
-from airhockey.agents.baseline.parameters import smash_parameters
-from airhockey.agents.baseline.planner import ShotPlanner
-from airhockey.agents.baseline.shots import Shot
-from airhockey.agents.baseline.skill import Array, Situation
-from airhockey.agents.baseline.striker import Striker
 from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.workspace import Workspace
+from airhockey.agents.planner.opponent import OpponentTrack
+from airhockey.agents.planner.parameters import smash_parameters
+from airhockey.agents.planner.planner import ShotPlanner
+from airhockey.agents.planner.shots import Shot
+from airhockey.agents.planner.skill import Array, Situation
+from airhockey.agents.planner.striker import Striker
 
 GUARD = -0.85
 """x from which the mallet watches a puck that offers no shot, in [m]."""

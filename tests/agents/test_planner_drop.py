@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from airhockey.agents.baseline.drop import GAIN, PLACE, roll
-from airhockey.agents.baseline.evidence import FLIGHT, PATIENCE, ShotRecord
-from airhockey.agents.baseline.parameters import smash_parameters
-from airhockey.agents.baseline.roll_watch import RollWatch
-from airhockey.agents.baseline.rules import Rules, make_rules
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.motion import advance, puck_motion
+from airhockey.agents.planner.drop import GAIN, PLACE, roll
+from airhockey.agents.planner.evidence import FLIGHT, PATIENCE, ShotRecord
+from airhockey.agents.planner.parameters import smash_parameters
+from airhockey.agents.planner.roll_watch import RollWatch
+from airhockey.agents.planner.rules import Rules, make_rules
 from airhockey.agents.table import CONTACT, to_robot
 from airhockey.envs.specs import IIWA
 

@@ -13,15 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from airhockey.agents.baseline.contact import resting_place
-from airhockey.agents.baseline.driving import drive, go_to, round_the_puck
-from airhockey.agents.baseline.interception import STEP, Reach, Wish, best_meeting, meeting, puck_path
-from airhockey.agents.baseline.skill import Array, Situation
 from airhockey.agents.control.cartesian import cubic
 from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.motion import advance, puck_motion
 from airhockey.agents.parameters import load_parameters
+from airhockey.agents.planner.contact import resting_place
+from airhockey.agents.planner.driving import drive, go_to, round_the_puck
+from airhockey.agents.planner.interception import STEP, Reach, Wish, best_meeting, meeting, puck_path
+from airhockey.agents.planner.skill import Array, Situation
 from airhockey.agents.table import CONTACT, OWN_GOAL, to_table
 
 

@@ -1,5 +1,6 @@
 """How an agent is made in the process that it lives in, the evaluator's or its own."""
 
+from pathlib import Path
 from typing import Any
 
 from airhockey.evaluator.isolation.handle import LocalAgent
@@ -29,7 +30,7 @@ def build_local(agent: str, env_info: dict[str, Any], agent_id: int = 1, **kwarg
     from airhockey.agents.submission import is_submission
 
     if is_submission(agent):
-        from airhockey import compat
+        from airhockey.compat import build_entry
 
-        compat.install()
+        return LocalAgent(build_entry(Path(agent).expanduser(), env_info, agent_id, **kwargs))
     return LocalAgent(build_agent(agent, env_info, agent_id=agent_id, **kwargs))

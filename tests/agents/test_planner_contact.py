@@ -5,9 +5,9 @@ import pytest
 
 from airhockey import envs
 from airhockey.agents.estimation.motion import advance, puck_motion
-from airhockey.agents.planner.contact import RESTITUTION, redirecting, resting_place
-from airhockey.agents.planner.puck_physics import clearance, put_on_table, step
-from airhockey.agents.planner.stroke import coast
+from airhockey.agents.planner.contacts.puck_physics import clearance, put_on_table, step
+from airhockey.agents.planner.contacts.redirection import RESTITUTION, redirecting, resting_place
+from airhockey.agents.planner.pushes.push import coast
 from airhockey.agents.table import CONTACT, HOME
 from airhockey.envs.specs import IIWA, PUCK, TABLE
 

@@ -6,9 +6,9 @@ from skill_player import SkillPlayer
 
 from airhockey.agents.control.cartesian import cubic
 from airhockey.agents.estimation.motion import puck_motion
-from airhockey.agents.planner.defend import Defend
-from airhockey.agents.planner.interception import STEP, Reach, best_meeting, effort, meeting, puck_path
-from airhockey.agents.planner.repel import Repel
+from airhockey.agents.planner.contacts.interception import STEP, Reach, best_meeting, effort, meeting, puck_path
+from airhockey.agents.planner.skills.defend import Defend
+from airhockey.agents.planner.skills.repel import Repel
 from airhockey.agents.table import CONTACT, HOME
 from airhockey.errors import ConfigurationError
 

@@ -8,13 +8,13 @@ import pytest
 from airhockey.agents.control.parameters import control_parameters
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.motion import advance
-from airhockey.agents.planner.aiming import after_strike, mirrored, strike_normal
-from airhockey.agents.planner.flight import FLIGHT_STEP, coast, fly
-from airhockey.agents.planner.opponent import OpponentTrack, figure_of_eight
-from airhockey.agents.planner.parameters import smash_parameters
-from airhockey.agents.planner.rules import Rules, make_rules
-from airhockey.agents.planner.shots import Shot, judge, room_speed, turned
-from airhockey.agents.planner.strike import run_up
+from airhockey.agents.planner.estimation.opponent import OpponentTrack, figure_of_eight
+from airhockey.agents.planner.motion.strike import run_up
+from airhockey.agents.planner.shots.aiming import after_strike, mirrored, strike_normal
+from airhockey.agents.planner.shots.flight import FLIGHT_STEP, coast, fly
+from airhockey.agents.planner.shots.parameters import smash_parameters
+from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
+from airhockey.agents.planner.shots.shots import Shot, judge, room_speed, turned
 from airhockey.agents.table import CONTACT, HALF_LENGTH, to_robot
 from airhockey.envs.specs import IIWA
 
@@ -23,16 +23,16 @@ TIP = np.array([-0.86, 0.0])
 
 
 @pytest.fixture(scope="module")
-def rules() -> Rules:
+def model() -> ShotModel:
     workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0)
     assert control_parameters(IIWA).edge_margin == pytest.approx(0.008)
-    return make_rules(smash_parameters(IIWA), workspace)._replace(turn=0.0)
+    return make_shot_model(smash_parameters(IIWA), workspace)._replace(turn=0.0)
 
 
 def shot_at(
-    rules: Rules, puck: list[float], aim: float = 0.0, wall: float = 0.0, opponent: np.ndarray = NOBODY
+    model: ShotModel, puck: list[float], aim: float = 0.0, wall: float = 0.0, opponent: np.ndarray = NOBODY
 ) -> Shot:
-    return judge(np.array(puck), 3.0, aim, wall, TIP, opponent, 0.0, 0.0, rules)
+    return judge(np.array(puck), 3.0, aim, wall, TIP, opponent, 0.0, 0.0, model)
 
 
 def test_a_puck_at_rest_leaves_along_the_normal() -> None:
@@ -67,8 +67,8 @@ def test_a_puck_aimed_at_the_mirrored_target_arrives_at_the_target() -> None:
     assert wall - restitution * lateral * (way - there) == pytest.approx(target)
 
 
-def test_the_mallet_touches_the_puck_opposite_to_where_it_shall_go(rules: Rules) -> None:
-    shot = shot_at(rules, [-0.5, 0.2, 0.0, 0.0, 0.0], aim=0.03)
+def test_the_mallet_touches_the_puck_opposite_to_where_it_shall_go(model: ShotModel) -> None:
+    shot = shot_at(model, [-0.5, 0.2, 0.0, 0.0, 0.0], aim=0.03)
     way = np.array([HALF_LENGTH + 0.5, 0.03 - 0.2])
     assert shot.normal == pytest.approx(way / np.hypot(*way))
     assert shot.mallet == pytest.approx(np.array([-0.5, 0.2]) - CONTACT * shot.normal)
@@ -76,45 +76,45 @@ def test_the_mallet_touches_the_puck_opposite_to_where_it_shall_go(rules: Rules)
 
 
 @pytest.mark.parametrize("wall", [-1.0, 1.0])
-def test_a_bounced_shot_flies_to_where_it_is_aimed(rules: Rules, wall: float) -> None:
+def test_a_bounced_shot_flies_to_where_it_is_aimed(model: ShotModel, wall: float) -> None:
     puck = np.array([-0.5, 0.1, 0.0, 0.0, 0.0])
-    shot = shot_at(rules, list(puck), aim=0.02, wall=wall)
+    shot = shot_at(model, list(puck), aim=0.02, wall=wall)
     assert shot.value > 0.2
     assert np.sign(shot.normal[1]) == wall
-    puck[2:4] = after_strike(puck[2:4], shot.normal, shot.speed, rules.gain)
-    assert fly(puck, NOBODY, 0.0, rules)[0] == pytest.approx(0.02, abs=0.015)
+    puck[2:4] = after_strike(puck[2:4], shot.normal, shot.speed, model.gain)
+    assert fly(puck, NOBODY, 0.0, model)[0] == pytest.approx(0.02, abs=0.015)
 
 
-def test_the_opponent_in_the_way_costs_the_goal(rules: Rules) -> None:
+def test_the_opponent_in_the_way_costs_the_goal(model: ShotModel) -> None:
     puck = [-0.5, 0.0, 0.0, 0.0, 0.0]
-    assert shot_at(rules, puck, opponent=np.tile([0.86, 0.0], (2, 1))).value < 0.02
-    assert shot_at(rules, puck, opponent=np.tile([0.86, 0.17], (2, 1))).value > 0.75
+    assert shot_at(model, puck, opponent=np.tile([0.86, 0.0], (2, 1))).value < 0.02
+    assert shot_at(model, puck, opponent=np.tile([0.86, 0.17], (2, 1))).value > 0.75
 
 
-def test_the_opponent_counts_where_it_is_when_the_puck_passes(rules: Rules) -> None:
+def test_the_opponent_counts_where_it_is_when_the_puck_passes(model: ShotModel) -> None:
     puck = [-0.5, 0.0, 0.0, 0.0, 0.0]
     away = np.tile([0.86, 0.3], (round(8.0 / FLIGHT_STEP), 1))
     early, late = away.copy(), away.copy()
     early[: round(3.5 / FLIGHT_STEP), 1] = 0.0  # the strike is after 3 s, the flight takes about one second
     late[round(3.5 / FLIGHT_STEP) : round(4.5 / FLIGHT_STEP), 1] = 0.0
-    assert shot_at(rules, puck, opponent=early).value > 0.75
-    assert shot_at(rules, puck, opponent=late).value < 0.02
+    assert shot_at(model, puck, opponent=early).value > 0.75
+    assert shot_at(model, puck, opponent=late).value < 0.02
 
 
 @pytest.mark.parametrize("puck", [[-0.5, 0.485], [-0.93, 0.3], [0.1, 0.0]], ids=["side", "back", "theirs"])
-def test_there_is_no_straight_shot_from_a_bad_place(rules: Rules, puck: list[float]) -> None:
-    assert shot_at(rules, [*puck, 0.0, 0.0, 0.0]).value == 0.0
+def test_there_is_no_straight_shot_from_a_bad_place(model: ShotModel, puck: list[float]) -> None:
+    assert shot_at(model, [*puck, 0.0, 0.0, 0.0]).value == 0.0
 
 
-def test_there_is_no_shot_without_the_time_for_the_way(rules: Rules) -> None:
+def test_there_is_no_shot_without_the_time_for_the_way(model: ShotModel) -> None:
     puck = np.array([-0.4, -0.35, 0.0, 0.0, 0.0])
-    assert judge(puck, 0.3, 0.0, 0.0, TIP, NOBODY, 0.0, 0.0, rules).value == 0.0
+    assert judge(puck, 0.3, 0.0, 0.0, TIP, NOBODY, 0.0, 0.0, model).value == 0.0
 
 
-def test_the_speed_that_the_room_allows_uses_up_the_room(rules: Rules) -> None:
+def test_the_speed_that_the_room_allows_uses_up_the_room(model: ShotModel) -> None:
     normal = np.array([1.0, 0.0])
-    speed = room_speed(np.array([rules.lower[0] + 0.051, 0.0]), normal, rules)
-    assert run_up(speed, rules.acceleration, rules.steady)[0] == pytest.approx(0.05)
+    speed = room_speed(np.array([model.lower[0] + 0.051, 0.0]), normal, model)
+    assert run_up(speed, model.acceleration, model.steady)[0] == pytest.approx(0.05)
 
 
 def test_turned_changes_the_sine_by_a_share() -> None:
@@ -164,10 +164,10 @@ def test_a_restless_opponent_is_expected_where_it_is() -> None:
 
 
 @pytest.mark.parametrize("velocity", [[0.7, -0.4], [-0.8, 0.9]])
-def test_the_puck_coasts_as_it_does_in_small_pieces(rules: Rules, velocity: list[float]) -> None:
+def test_the_puck_coasts_as_it_does_in_small_pieces(model: ShotModel, velocity: list[float]) -> None:
     puck = np.array([-0.6, 0.2, *velocity, 1.0])
-    path = coast(puck, 0.02, 100, rules.motion)
+    path = coast(puck, 0.02, 100, model.motion)
     for k in range(100):
         expected = path[k].copy()
-        advance(expected, 0.02, rules.motion)
+        advance(expected, 0.02, model.motion)
         assert path[k + 1] == pytest.approx(expected, abs=1e-12)

@@ -13,11 +13,11 @@ from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.kalman import PuckEstimate
 from airhockey.agents.estimation.prediction import PuckPredictor
 from airhockey.agents.parameters import convert
-from airhockey.agents.planner.approach import approach
-from airhockey.agents.planner.parameters import SmashParameters, smash_parameters
-from airhockey.agents.planner.skill import Situation
-from airhockey.agents.planner.strike import Strike, run_up
+from airhockey.agents.planner.motion.approach import approach
+from airhockey.agents.planner.motion.strike import Strike, run_up
+from airhockey.agents.planner.shots.parameters import SmashParameters, smash_parameters
 from airhockey.agents.planner.tactics import choose
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, to_robot, to_table
 from airhockey.envs.specs import IIWA, PLANAR, SOFT_LIMIT, RobotSpec
 from airhockey.errors import ConfigurationError

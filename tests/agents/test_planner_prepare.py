@@ -1,14 +1,13 @@
-"""Preparing: strokes by finite differences, the search by trying out what it finds, the way round the puck, whole episodes."""
+"""Preparing: pushes by finite differences, the search by trying out what it finds, the way round the puck, whole episodes."""
 
 import numpy as np
 import pytest
 from skill_player import SkillPlayer
 
 from airhockey.agents.estimation.motion import puck_motion
-from airhockey.agents.planner.driving import is_clear, round_the_puck
-from airhockey.agents.planner.prepare import Prepare
-from airhockey.agents.planner.rest_watch import RestWatch
-from airhockey.agents.planner.stroke import (
+from airhockey.agents.planner.estimation.rest_detection import RestDetection
+from airhockey.agents.planner.motion.driving import is_clear, round_the_puck
+from airhockey.agents.planner.pushes.push import (
     END,
     FOLLOW,
     LENGTH,
@@ -22,7 +21,8 @@ from airhockey.agents.planner.stroke import (
     possible,
     puck_after,
 )
-from airhockey.agents.planner.stroke_search import draw, search, worth
+from airhockey.agents.planner.pushes.push_search import draw, search, worth
+from airhockey.agents.planner.skills.prepare import Prepare
 from airhockey.agents.table import CONTACT
 
 CONSTANTS = puck_motion().constants
@@ -39,54 +39,54 @@ def goal(player):
     return player.skill._goal
 
 
-def strokes(goal, count=20):
+def pushes(goal, count=20):
     random = np.random.default_rng(5)
     return [draw(np.array([-0.6, 0.43, 0.0, 0.0, 0.0]), goal, random) for _ in range(count)]
 
 
 def test_velocity_is_the_derivative_of_the_position(goal):
-    for stroke in strokes(goal):
-        for time in np.linspace(-stroke[RUN_UP] + 0.01, stroke[FOLLOW] + stroke[RETREAT] - 0.01, 23):
-            if min(abs(time), abs(time - stroke[FOLLOW])) < 1e-4:
+    for push in pushes(goal):
+        for time in np.linspace(-push[RUN_UP] + 0.01, push[FOLLOW] + push[RETREAT] - 0.01, 23):
+            if min(abs(time), abs(time - push[FOLLOW])) < 1e-4:
                 continue
             for axis in range(2):
-                slope = (mallet_at(stroke, axis, time + 1e-6)[0] - mallet_at(stroke, axis, time - 1e-6)[0]) / 2e-6
-                assert mallet_at(stroke, axis, time)[1] == pytest.approx(slope, abs=1e-5)
+                slope = (mallet_at(push, axis, time + 1e-6)[0] - mallet_at(push, axis, time - 1e-6)[0]) / 2e-6
+                assert mallet_at(push, axis, time)[1] == pytest.approx(slope, abs=1e-5)
 
 
 def test_a_stroke_goes_from_rest_through_the_contact_to_rest(goal):
-    for stroke in strokes(goal):
+    for push in pushes(goal):
         for time, part, velocity in (
-            (-stroke[RUN_UP], START, np.zeros(2)),
-            (0.0, PLACE, stroke[VELOCITY : VELOCITY + 2]),
-            (stroke[FOLLOW] + stroke[RETREAT], END, np.zeros(2)),
+            (-push[RUN_UP], START, np.zeros(2)),
+            (0.0, PLACE, push[VELOCITY : VELOCITY + 2]),
+            (push[FOLLOW] + push[RETREAT], END, np.zeros(2)),
         ):
             for axis in range(2):
-                state = mallet_at(stroke, axis, time)
-                np.testing.assert_allclose(state, (stroke[part + axis], velocity[axis]), atol=1e-9)
+                state = mallet_at(push, axis, time)
+                np.testing.assert_allclose(state, (push[part + axis], velocity[axis]), atol=1e-9)
 
 
 def test_what_is_possible_stays_on_the_table_and_within_the_means(goal):
-    for stroke in strokes(goal, 60):
+    for push in pushes(goal, 60):
         path = np.array(
             [
-                [mallet_at(stroke, axis, t) for axis in range(2)]
-                for t in np.arange(-stroke[RUN_UP], stroke[FOLLOW] + stroke[RETREAT], 0.02)
+                [mallet_at(push, axis, t) for axis in range(2)]
+                for t in np.arange(-push[RUN_UP], push[FOLLOW] + push[RETREAT], 0.02)
             ]
         )
         inside = np.all(path[:, :, 0] >= goal.lower) and np.all(path[:, :, 0] <= goal.upper)
         slow = np.all(np.abs(path[:, :, 1]) <= goal.speed)
-        if possible(stroke, goal.lower, goal.upper, goal.speed, goal.acceleration):
+        if possible(push, goal.lower, goal.upper, goal.speed, goal.acceleration):
             assert inside and slow
         if not inside:
-            assert not possible(stroke, goal.lower, goal.upper, *FAST)
+            assert not possible(push, goal.lower, goal.upper, *FAST)
 
 
 @pytest.mark.parametrize("place", [(-0.5, 0.42), (-0.3, -0.44), (-0.88, 0.2), (-0.9, -0.4), (-0.92, 0.47)])
 def test_the_stroke_found_brings_the_puck_to_a_good_place(goal, place):
     puck = np.array([*place, 0.0, 0.0, 0.0])
-    stroke, value = search(puck, np.zeros(LENGTH), -2.0, goal, CONSTANTS, np.random.default_rng(2), 600)
-    after, out_of_turn = puck_after(puck, stroke, CONSTANTS, goal.friction, 1.0, goal.middle)
+    push, value = search(puck, np.zeros(LENGTH), -2.0, goal, CONSTANTS, np.random.default_rng(2), 600)
+    after, out_of_turn = puck_after(puck, push, CONSTANTS, goal.friction, 1.0, goal.middle)
     ended, last = coast(after, CONSTANTS, goal.middle, goal.horizon)
     assert not out_of_turn and value > 1.3 and ended in (0, 1)
     assert -0.8 < last[0] <= -0.2 and abs(last[1]) < 0.39105 and last[2] < 0.1
@@ -131,7 +131,7 @@ def test_a_way_is_clear_or_not():
 def test_a_slow_puck_is_told_from_a_resting_one():
     random = np.random.default_rng(3)
     for velocity in (np.zeros(2), np.array([0.03, -0.02])):
-        watch = RestWatch(0.02)
+        watch = RestDetection(0.02)
         for k in range(60):
             watch.see(np.array([-0.5, 0.4]) + 0.02 * k * velocity + 0.0007 * random.standard_normal(2))
         position, seen = watch.motion()

@@ -8,7 +8,7 @@ from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.kalman import PuckFilter
 from airhockey.agents.estimation.prediction import PuckPredictor
-from airhockey.agents.planner.skill import Situation
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, to_table
 
 

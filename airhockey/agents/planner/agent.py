@@ -12,15 +12,15 @@ from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.kalman import Noise, PuckEstimate
 from airhockey.agents.estimation.prediction import PuckPredictor
 from airhockey.agents.estimation.watch import TableWatch
-from airhockey.agents.planner.defend import Defend
-from airhockey.agents.planner.drop import Drop
-from airhockey.agents.planner.evidence import ShotRecord
-from airhockey.agents.planner.prepare import Prepare
-from airhockey.agents.planner.ready import Ready
-from airhockey.agents.planner.repel import Repel
-from airhockey.agents.planner.skill import Situation, Skill
-from airhockey.agents.planner.smash import Smash
+from airhockey.agents.planner.estimation.shot_statistics import ShotStatistics
+from airhockey.agents.planner.skills.dead_puck import DeadPuck
+from airhockey.agents.planner.skills.defend import Defend
+from airhockey.agents.planner.skills.prepare import Prepare
+from airhockey.agents.planner.skills.ready import Ready
+from airhockey.agents.planner.skills.repel import Repel
+from airhockey.agents.planner.skills.smash import Smash
 from airhockey.agents.planner.tactics import choose
+from airhockey.agents.skill import Situation, Skill
 from airhockey.agents.table import to_table
 
 WARM_UP_STEPS = 60
@@ -48,8 +48,8 @@ class PlannerAgent(AgentBase):
         self._watch = TableWatch(env_info, NOISE)
         self._predictor = PuckPredictor()
         self._task = str(env_info["env_name"]).rpartition("-")[2]
-        self._smash, self._drop = Smash(env_info), Drop(env_info)
-        self._shots = ShotRecord()
+        self._smash, self._drop = Smash(env_info), DeadPuck(env_info)
+        self._shots = ShotStatistics()
         self._skills: dict[str, Skill] = {
             "smash": self._smash,
             "drop": self._drop,

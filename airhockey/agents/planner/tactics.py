@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from airhockey.agents.planner.skill import Situation
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, HALF_LENGTH
 
 SLOW = 0.15

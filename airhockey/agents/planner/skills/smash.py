@@ -7,12 +7,12 @@ import numpy as np
 
 from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.workspace import Workspace
-from airhockey.agents.planner.opponent import OpponentTrack
-from airhockey.agents.planner.parameters import smash_parameters
-from airhockey.agents.planner.planner import ShotPlanner
-from airhockey.agents.planner.shots import Shot
-from airhockey.agents.planner.skill import Array, Situation
-from airhockey.agents.planner.striker import Striker
+from airhockey.agents.planner.estimation.opponent import OpponentTrack
+from airhockey.agents.planner.shots.parameters import smash_parameters
+from airhockey.agents.planner.shots.shot_search import ShotPlanner
+from airhockey.agents.planner.shots.shots import Shot
+from airhockey.agents.planner.skills.striker import Striker
+from airhockey.agents.skill import Array, Situation
 
 GUARD = -0.85
 """x from which the mallet watches a puck that offers no shot, in [m]."""

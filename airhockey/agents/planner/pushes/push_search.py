@@ -1,4 +1,4 @@
-"""Which stroke brings a puck from a rim to where it can be played: random search, each candidate tried out in `puck_physics`.
+"""Which push brings a puck from a rim to where it can be played: random search, each candidate tried out in `puck_physics`.
 
 Half of the candidates are drawn, the other half vary the best one so far. A candidate counts by several tries with the puck, the
 mallet and the rims not quite as they are believed to be.
@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
-from airhockey.agents.planner.contact import RESTITUTION
-from airhockey.agents.planner.puck_physics import put_on_table
-from airhockey.agents.planner.stroke import (
+from airhockey.agents.planner.contacts.puck_physics import put_on_table
+from airhockey.agents.planner.contacts.redirection import RESTITUTION
+from airhockey.agents.planner.pushes.push import (
     END,
     FOLLOW,
     LENGTH,
@@ -47,7 +47,7 @@ _RESTITUTION = 5  # place in the constants of `PuckMotion`
 
 
 class Goal(NamedTuple):
-    """What a stroke shall achieve, and with what means.
+    """What a push shall achieve, and with what means.
 
     Attributes:
         near_x, far_x, wide_y: The good places: x between the first two, |y| up to the third, in [m].
@@ -104,12 +104,12 @@ def worth(ended: int, puck: Array, goal: Goal) -> float:
 
 
 @compiled
-def value(puck: Array, stroke: Array, goal: Goal, constants: Array, least: float) -> float:
-    """Half the least and half the mean of a stroke's worth over the doubts; gives up early below `least`."""
+def value(puck: Array, push: Array, goal: Goal, constants: Array, least: float) -> float:
+    """Half the least and half the mean of a push's worth over the doubts; gives up early below `least`."""
     total, lowest = 0.0, 2.0
     bounces = constants.copy()
     for k in range(len(DOUBTS)):
-        state, played = puck.copy(), stroke.copy()
+        state, played = puck.copy(), push.copy()
         for i in range(2):
             state[i] += goal.doubt * DOUBTS[k, i]
             played[VELOCITY + i] *= 1.0 + goal.haste * DOUBTS[k, 2]
@@ -130,8 +130,8 @@ def value(puck: Array, stroke: Array, goal: Goal, constants: Array, least: float
 
 @compiled
 def draw(puck: Array, goal: Goal, rng: np.random.Generator) -> Array:
-    """A stroke at random: half of them meant to send the puck to a good place directly."""
-    stroke = np.empty(LENGTH)
+    """A push at random: half of them meant to send the puck to a good place directly."""
+    push = np.empty(LENGTH)
     side = 1.0 if puck[1] > 0.0 else -1.0
     for _ in range(30):
         angle = rng.uniform(0.0, 2.0 * np.pi)
@@ -148,41 +148,41 @@ def draw(puck: Array, goal: Goal, rng: np.random.Generator) -> Array:
         if normal > 0.02 and abs(along) < normal:
             speed = normal / (1.0 + RESTITUTION)
             across = 3.0 * along
-    stroke[PLACE : PLACE + 2] = place
-    stroke[VELOCITY : VELOCITY + 2] = across * tangent - speed * outward
-    stroke[RUN_UP] = rng.uniform(0.25, 0.5)
-    stroke[FOLLOW] = rng.uniform(0.0, 0.04)
-    stroke[RETREAT] = rng.uniform(0.25, 0.4)
+    push[PLACE : PLACE + 2] = place
+    push[VELOCITY : VELOCITY + 2] = across * tangent - speed * outward
+    push[RUN_UP] = rng.uniform(0.25, 0.5)
+    push[FOLLOW] = rng.uniform(0.0, 0.04)
+    push[RETREAT] = rng.uniform(0.25, 0.4)
     turn = rng.uniform(-1.6, 1.6)
     away = np.cos(turn) * outward + np.sin(turn) * tangent
-    stroke[END : END + 2] = place + rng.uniform(0.04, 0.12) * away
-    finish(stroke, goal)
-    return stroke
+    push[END : END + 2] = place + rng.uniform(0.04, 0.12) * away
+    finish(push, goal)
+    return push
 
 
 @compiled
 def vary(best: Array, puck: Array, goal: Goal, rng: np.random.Generator) -> Array:
-    """A stroke like another."""
-    stroke = best.copy()
-    outward = stroke[PLACE : PLACE + 2] - puck[:2]
+    """A push like another."""
+    push = best.copy()
+    outward = push[PLACE : PLACE + 2] - puck[:2]
     angle = np.arctan2(outward[1], outward[0]) + 0.1 * rng.normal()
-    stroke[PLACE : PLACE + 2] = puck[:2] + CONTACT * np.array([np.cos(angle), np.sin(angle)])
-    size = np.hypot(stroke[VELOCITY], stroke[VELOCITY + 1])
+    push[PLACE : PLACE + 2] = puck[:2] + CONTACT * np.array([np.cos(angle), np.sin(angle)])
+    size = np.hypot(push[VELOCITY], push[VELOCITY + 1])
     for i in range(2):
-        stroke[VELOCITY + i] += 0.12 * size * rng.normal()
-        stroke[END + i] += 0.01 * rng.normal()
-    stroke[FOLLOW] = min(max(stroke[FOLLOW] + 0.005 * rng.normal(), 0.0), 0.06)
-    finish(stroke, goal)
-    return stroke
+        push[VELOCITY + i] += 0.12 * size * rng.normal()
+        push[END + i] += 0.01 * rng.normal()
+    push[FOLLOW] = min(max(push[FOLLOW] + 0.005 * rng.normal(), 0.0), 0.06)
+    finish(push, goal)
+    return push
 
 
 @compiled
-def finish(stroke: Array, goal: Goal) -> None:
+def finish(push: Array, goal: Goal) -> None:
     """Begin where an even acceleration would, or as near as the table allows; end on the table."""
     for i in range(2):
-        start = stroke[PLACE + i] - 0.5 * stroke[RUN_UP] * stroke[VELOCITY + i]
-        stroke[START + i] = min(max(start, goal.lower[i]), goal.upper[i])
-        stroke[END + i] = min(max(stroke[END + i], goal.lower[i]), goal.upper[i])
+        start = push[PLACE + i] - 0.5 * push[RUN_UP] * push[VELOCITY + i]
+        push[START + i] = min(max(start, goal.lower[i]), goal.upper[i])
+        push[END + i] = min(max(push[END + i], goal.lower[i]), goal.upper[i])
 
 
 @compiled
@@ -195,13 +195,13 @@ def search(
     rng: np.random.Generator,
     tries: int,
 ) -> tuple[Array, float]:
-    """Improve on a stroke. Returns the best one and its value. `best_value` below −1: there is none yet."""
+    """Improve on a push. Returns the best one and its value. `best_value` below −1: there is none yet."""
     for _ in range(tries):
         local = best_value > -0.4 and rng.uniform(0.0, 1.0) < 0.5
-        stroke = vary(best, puck, goal, rng) if local else draw(puck, goal, rng)
-        if not possible(stroke, goal.lower, goal.upper, goal.speed, goal.acceleration):
+        push = vary(best, puck, goal, rng) if local else draw(puck, goal, rng)
+        if not possible(push, goal.lower, goal.upper, goal.speed, goal.acceleration):
             continue
-        found = value(puck, stroke, goal, constants, best_value)
+        found = value(puck, push, goal, constants, best_value)
         if found > best_value:
-            best, best_value = stroke, found
+            best, best_value = push, found
     return best, best_value

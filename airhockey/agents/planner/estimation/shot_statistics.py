@@ -6,7 +6,7 @@ FLIGHT = 3.0
 """Time after which a shot has failed, in [s]: then the puck has stopped, or come back."""
 
 
-class ShotRecord:
+class ShotStatistics:
     """Told of every strike and of every serve: a serve soon after a strike means that it was a goal.
 
     Attributes:

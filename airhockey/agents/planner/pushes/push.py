@@ -1,7 +1,7 @@
-"""A stroke: a short motion of the mallet that touches a puck at rest once, and what becomes of the puck.
+"""A push: a short motion of the mallet that touches a puck at rest once, and what becomes of the puck.
 
 The mallet runs up from rest to the place of contact, goes straight on for a moment, and retreats to rest: two cubics and a line.
-A stroke is an array of 11 numbers: see the indices below.
+A push is an array of 11 numbers: see the indices below.
 """
 
 import math
@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import bounce, slide
-from airhockey.agents.planner.puck_physics import TIME_STEP, clearance, step
+from airhockey.agents.planner.contacts.puck_physics import TIME_STEP, clearance, step
 from airhockey.agents.table import CONTACT
 
 Array = NDArray[np.float64]
 
 START, PLACE, VELOCITY, END = 0, 2, 4, 6
-"""Where a stroke begins, where the mallet touches the puck, its velocity there, where it ends: two numbers each, table frame."""
+"""Where a push begins, where the mallet touches the puck, its velocity there, where it ends: two numbers each, table frame."""
 RUN_UP, FOLLOW, RETREAT = 8, 9, 10
 """Durations of the three pieces, in [s]."""
 LENGTH = 11
@@ -39,27 +39,27 @@ def cubic_at(
 
 
 @compiled
-def mallet_at(stroke: Array, axis: int, time: float) -> tuple[float, float]:
+def mallet_at(push: Array, axis: int, time: float) -> tuple[float, float]:
     """Position and velocity of the mallet along one axis at a time after the contact, in [s], [m] and [m]/[s]."""
-    place, velocity = stroke[PLACE + axis], stroke[VELOCITY + axis]
+    place, velocity = push[PLACE + axis], push[VELOCITY + axis]
     if time < 0.0:
-        time = max(time + stroke[RUN_UP], 0.0)
-        return cubic_at(stroke[START + axis], 0.0, place, velocity, stroke[RUN_UP], time)
-    if time < stroke[FOLLOW]:
+        time = max(time + push[RUN_UP], 0.0)
+        return cubic_at(push[START + axis], 0.0, place, velocity, push[RUN_UP], time)
+    if time < push[FOLLOW]:
         return place + time * velocity, velocity
-    begin = place + stroke[FOLLOW] * velocity
-    time = min(time - stroke[FOLLOW], stroke[RETREAT])
-    return cubic_at(begin, velocity, stroke[END + axis], 0.0, stroke[RETREAT], time)
+    begin = place + push[FOLLOW] * velocity
+    time = min(time - push[FOLLOW], push[RETREAT])
+    return cubic_at(begin, velocity, push[END + axis], 0.0, push[RETREAT], time)
 
 
 @compiled
-def possible(stroke: Array, lower: Array, upper: Array, speed: Array, acceleration: Array) -> bool:
+def possible(push: Array, lower: Array, upper: Array, speed: Array, acceleration: Array) -> bool:
     """Whether the mallet stays in a rectangle and within its means along x and y. Shapes (2,) each."""
-    steps = int(np.ceil((stroke[RUN_UP] + stroke[FOLLOW] + stroke[RETREAT]) / 0.02))
+    steps = int(np.ceil((push[RUN_UP] + push[FOLLOW] + push[RETREAT]) / 0.02))
     for i in range(2):
         last = 0.0
         for k in range(steps + 1):
-            position, velocity = mallet_at(stroke, i, 0.02 * k - stroke[RUN_UP])
+            position, velocity = mallet_at(push, i, 0.02 * k - push[RUN_UP])
             if position < lower[i] or position > upper[i]:
                 return False
             if abs(velocity) > speed[i] or abs(velocity - last) > 0.02 * acceleration[i]:
@@ -70,13 +70,13 @@ def possible(stroke: Array, lower: Array, upper: Array, speed: Array, accelerati
 
 @compiled
 def puck_after(
-    puck: Array, stroke: Array, constants: Array, friction: float, rim: float, middle: float
+    puck: Array, push: Array, constants: Array, friction: float, rim: float, middle: float
 ) -> tuple[Array, bool]:
-    """The puck's state at the end of a stroke, or when it comes to the long axis of the table.
+    """The puck's state at the end of a push, or when it comes to the long axis of the table.
 
     Args:
         puck: State before, at rest. Shape (5,).
-        stroke: Shape (11,).
+        push: Shape (11,).
         constants: `PuckMotion.constants`.
         friction: μ between mallet and puck.
         rim: Damping ratio of the rims, as a multiple of the nominal one.
@@ -86,29 +86,29 @@ def puck_after(
         Shape (5,), and whether the mallet touched it out of turn: in the run-up or the late retreat.
     """
     state = puck.copy()
-    time, end = -stroke[RUN_UP], stroke[FOLLOW] + stroke[RETREAT]
+    time, end = -push[RUN_UP], push[FOLLOW] + push[RETREAT]
     while time < 0.0:  # the puck lies still until the mallet is there
-        x, _ = mallet_at(stroke, 0, time)
-        y, _ = mallet_at(stroke, 1, time)
+        x, _ = mallet_at(push, 0, time)
+        y, _ = mallet_at(push, 1, time)
         if math.hypot(x - puck[0], y - puck[1]) < CONTACT + 0.005:
             break
         time += 0.005
     if time < -EARLY:
         return state, True
     while time < end:
-        x, vx = mallet_at(stroke, 0, time)
-        y, vy = mallet_at(stroke, 1, time)
+        x, vx = mallet_at(push, 0, time)
+        y, vy = mallet_at(push, 1, time)
         fastest = math.hypot(state[2], state[3]) + math.hypot(vx, vy) + 0.05
         if clearance(state, x, y) > FREE_STEP * fastest:
             slide(state, FREE_STEP, constants)
             time += FREE_STEP
         else:
             time += TIME_STEP
-            x, vx = mallet_at(stroke, 0, time)
-            y, vy = mallet_at(stroke, 1, time)
+            x, vx = mallet_at(push, 0, time)
+            y, vy = mallet_at(push, 1, time)
             if math.hypot(x - state[0], y - state[1]) < 0.5 * CONTACT:  # squeezed out of all proportion
                 return state, True
-            if step(state, x, y, vx, vy, friction, rim) and time > stroke[FOLLOW] + 0.5 * stroke[RETREAT]:
+            if step(state, x, y, vx, vy, friction, rim) and time > push[FOLLOW] + 0.5 * push[RETREAT]:
                 return state, True
         if abs(state[1]) < middle or state[0] > 0.0:
             break

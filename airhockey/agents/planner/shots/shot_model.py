@@ -7,14 +7,14 @@ from numpy.typing import NDArray
 
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.motion import puck_motion
-from airhockey.agents.planner.parameters import SmashParameters
+from airhockey.agents.planner.shots.parameters import SmashParameters
 from airhockey.agents.table import CONTACT, HALF_GOAL, HALF_LENGTH, to_table
 from airhockey.envs.specs import PUCK
 
 Array = NDArray[np.float64]
 
 
-class Rules(NamedTuple):
+class ShotModel(NamedTuple):
     """Table frame; units as in `SmashParameters`, whose attributes of the same names are meant.
 
     Attributes:
@@ -57,14 +57,14 @@ class Rules(NamedTuple):
     approach_margin: float
 
 
-def make_rules(parameters: SmashParameters, workspace: Workspace) -> Rules:
+def make_shot_model(parameters: SmashParameters, workspace: Workspace) -> ShotModel:
     """Gather them."""
     p, motion = parameters, puck_motion()
     lower, upper = to_table(workspace.lower) + p.edge, to_table(workspace.upper) - p.edge
     upper[0] = p.farthest
-    taken = {name: value for name, value in vars(p).items() if name in Rules._fields}
+    taken = {name: value for name, value in vars(p).items() if name in ShotModel._fields}
     taken |= {"speed_places": np.array(p.speed_places), "speeds": np.array(p.speeds)}
-    return Rules(
+    return ShotModel(
         motion=motion.constants,
         wall=float(motion.constants[1]),
         restitution=motion.restitution,

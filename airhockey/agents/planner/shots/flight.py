@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import advance_by, decay_over, pieces_of, slide_by
-from airhockey.agents.planner.rules import Rules
+from airhockey.agents.planner.shots.shot_model import ShotModel
 
 Array = NDArray[np.float64]
 
@@ -75,34 +75,34 @@ def state_at(path: Array, step: float, time: float) -> Array:
 
 
 @compiled
-def fly(puck: Array, opponent: Array, first: float, rules: Rules) -> tuple[float, float, float, float]:
+def fly(puck: Array, opponent: Array, first: float, model: ShotModel) -> tuple[float, float, float, float]:
     """Let a puck fly to the opponent's goal line.
 
     Args:
         puck: Its state. Shape (5,).
         opponent: The opponent's mallet at every `FLIGHT_STEP` from now. Shape (k, 2).
         first: Index into it at which the flight begins.
-        rules: Constants.
+        model: Constants.
 
     Returns:
         y on the goal line [m] (far off if it is never reached), the least gap to the opponent's mallet [m], the flight's
         length [m], and the speed with which it passed the opponent [m]/[s].
     """
     state, gap, length, passing = puck.copy(), _MISSED, 0.0, 0.0
-    pace = pace_of(FLIGHT_STEP, rules.motion)
+    pace = pace_of(FLIGHT_STEP, model.motion)
     for k in range(_FLIGHT_STEPS):
         before_x, before_y = state[0], state[1]
-        move_by(state, pace, rules.motion)
+        move_by(state, pace, model.motion)
         length += sqrt((state[0] - before_x) ** 2 + (state[1] - before_y) ** 2)
         if state[2] < _STUCK:
             break
-        if state[0] > rules.goal_line - _NEAR:
+        if state[0] > model.goal_line - _NEAR:
             at = opponent[min(int(first) + k + 1, len(opponent) - 1)]
-            distance = sqrt((state[0] - at[0]) ** 2 + (state[1] - at[1]) ** 2) - rules.contact
+            distance = sqrt((state[0] - at[0]) ** 2 + (state[1] - at[1]) ** 2) - model.contact
             if distance < gap:
                 gap, passing = distance, sqrt(state[2] ** 2 + state[3] ** 2)
-        if state[0] > rules.goal_line:
-            share = (rules.goal_line - before_x) / (state[0] - before_x)
+        if state[0] > model.goal_line:
+            share = (model.goal_line - before_x) / (state[0] - before_x)
             return before_y + share * (state[1] - before_y), gap, length, passing
     return _MISSED, gap, length, passing
 

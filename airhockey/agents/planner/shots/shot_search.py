@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
 from airhockey.agents.control.workspace import Workspace
-from airhockey.agents.planner.flight import FLIGHT_STEP, coast, state_at
-from airhockey.agents.planner.opponent import OpponentTrack
-from airhockey.agents.planner.parameters import SmashParameters
-from airhockey.agents.planner.rules import Rules, make_rules
-from airhockey.agents.planner.shots import Shot, judge
-from airhockey.agents.planner.skill import Array, Situation
+from airhockey.agents.planner.estimation.opponent import OpponentTrack
+from airhockey.agents.planner.shots.flight import FLIGHT_STEP, coast, state_at
+from airhockey.agents.planner.shots.parameters import SmashParameters
+from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
+from airhockey.agents.planner.shots.shots import Shot, judge
+from airhockey.agents.skill import Array, Situation
 from airhockey.envs.compiled import pack
 
 FLIGHT = 2.0
@@ -39,12 +39,12 @@ class ShotPlanner:
             least: Value below which there is no shot.
         """
         self._parameters, self._dt, self._least = parameters, dt, least
-        rules = make_rules(parameters, workspace)
-        self._motion, self._rules = rules.motion, pack(rules)
+        model = make_shot_model(parameters, workspace)
+        self._motion, self._model = model.motion, pack(model)
         self._times = np.arange(0.0, parameters.longest_wait + FLIGHT, FLIGHT_STEP)
         self.reset()
         path = coast(np.array([-0.5, 0.0, 0.0, 0.0, 0.0]), dt, 10, self._motion)
-        search(path, dt, np.array([-0.8, 0.0]), np.zeros((2, 2)), 0.1, _NONE, 0, 2, 1.0, 0.0, self._rules)
+        search(path, dt, np.array([-0.8, 0.0]), np.zeros((2, 2)), 0.1, _NONE, 0, 2, 1.0, 0.0, self._model)
 
     def reset(self) -> None:
         """Forget the shot."""
@@ -70,7 +70,7 @@ class ShotPlanner:
         self._best = search(
             path, self._dt, situation.tip,
             opponent.predict(self._times), 0.0 if opponent.swinging else p.opponent_doubt,
-            best, self._tried, count, horizon, p.improvement, self._rules,
+            best, self._tried, count, horizon, p.improvement, self._model,
         )  # fmt: skip
         self._tried += count
         return self._best if self._best.value > self._least else None
@@ -101,12 +101,12 @@ def search(
         count: How many to try.
         horizon: Longest wait, in [s].
         improvement: By how much another shot must be better than the best.
-        packed: A record of `Rules`.
+        packed: A record of `ShotModel`.
     """
-    rules = packed[0]
-    horizon = min(horizon, _safe_time(path, path_step, rules))
+    model = packed[0]
+    horizon = min(horizon, _safe_time(path, path_step, model))
     best = judge(
-        state_at(path, path_step, best.wait), best.wait, best.aim, best.wall, tip, opponent, doubt, -LENIENCE, rules
+        state_at(path, path_step, best.wait), best.wait, best.aim, best.wall, tip, opponent, doubt, -LENIENCE, model
     )
     if best.wait > horizon:
         best = Shot(0.0, best.wait, best.aim, best.wall, best.speed, best.normal, best.mallet)
@@ -115,23 +115,23 @@ def search(
         u, v, w = (0.7548776662 * i) % 1.0, (0.5698402910 * i) % 1.0, (0.3819660113 * i) % 1.0
         if i % 2 == 0 or best.value == 0.0:
             wait, wall = 0.1 + u * (horizon - 0.1), 0.0 if w < 0.6 else (-1.0 if w < 0.8 else 1.0)
-            aim = (2.0 * v - 1.0) * rules.goal_half_width
+            aim = (2.0 * v - 1.0) * model.goal_half_width
         else:
             wait, wall = best.wait + 0.1 * (u - 0.5), best.wall
             aim = best.aim + 0.05 * (v - 0.5)
         if wait > horizon or wait < 0.0:
             continue
         puck = state_at(path, path_step, wait)
-        shot = judge(puck, wait, aim, wall, tip, opponent, doubt, rules.approach_margin, rules)
+        shot = judge(puck, wait, aim, wall, tip, opponent, doubt, model.approach_margin, model)
         if shot.value > bar:
             best, bar = shot, shot.value
     return best
 
 
 @compiled
-def _safe_time(path: Array, path_step: float, rules: Rules) -> float:
+def _safe_time(path: Array, path_step: float, model: ShotModel) -> float:
     """Until the puck, left alone, comes to our own goal's mouth, in [s]: what comes later is not to be waited for."""
     for k in range(len(path)):
-        if path[k, 0] < rules.puck_radius - rules.goal_line and abs(path[k, 1]) < rules.mouth:
+        if path[k, 0] < model.puck_radius - model.goal_line and abs(path[k, 1]) < model.mouth:
             return k * path_step
     return len(path) * path_step

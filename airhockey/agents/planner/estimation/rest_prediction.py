@@ -12,7 +12,7 @@ NEAREST, FARTHEST = 0.55, 2.0
 """Between which R is looked for, in [m]; others are no rolling puck's."""
 
 
-class RollWatch:
+class RestPrediction:
     """Fed with the puck's x at every control step, from the strike on."""
 
     def __init__(self, dt: float) -> None:

@@ -1,6 +1,6 @@
 """`prepare`: bring a puck that lies at a rim to where it can be played, by one well-chosen touch after the other.
 
-Phases: `wait` (the puck rolls, or lies well), `think` (search for a stroke), `go round` (to where it begins), `strike`.
+Phases: `wait` (the puck rolls, or lies well), `think` (search for a push), `go round` (to where it begins), `strike`.
 """
 
 from collections.abc import Mapping
@@ -14,18 +14,18 @@ from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.motion import puck_motion
 from airhockey.agents.parameters import load_parameters
-from airhockey.agents.planner.driving import drive, go_to, round_the_puck
-from airhockey.agents.planner.puck_physics import put_on_table
-from airhockey.agents.planner.rest_watch import RestWatch
-from airhockey.agents.planner.skill import Array, Situation
-from airhockey.agents.planner.stroke import END, FOLLOW, LENGTH, PLACE, RETREAT, RUN_UP, START, coast, mallet_at
-from airhockey.agents.planner.stroke_search import Goal, finish, search, value, worth
+from airhockey.agents.planner.contacts.puck_physics import put_on_table
+from airhockey.agents.planner.estimation.rest_detection import RestDetection
+from airhockey.agents.planner.motion.driving import drive, go_to, round_the_puck
+from airhockey.agents.planner.pushes.push import END, FOLLOW, LENGTH, PLACE, RETREAT, RUN_UP, START, coast, mallet_at
+from airhockey.agents.planner.pushes.push_search import Goal, finish, search, value, worth
+from airhockey.agents.skill import Array, Situation
 from airhockey.agents.table import CONTACT, to_table
 
 
 @dataclass(frozen=True)
 class GoalParameters:
-    """See `stroke_search.Goal`."""
+    """See `push_search.Goal`."""
 
     near_x: float
     far_x: float
@@ -45,19 +45,19 @@ class PrepareParameters:
     """What can be tuned: `prepare.yaml` beside this module.
 
     Attributes:
-        goal: What a stroke shall achieve.
-        speed, acceleration: Of the rod tip in a stroke, at most, along x and y.
-        still: Speed below which a stroke is thought of, in [m]/[s].
+        goal: What a push shall achieve.
+        speed, acceleration: Of the rod tip in a push, at most, along x and y.
+        still: Speed below which a push is thought of, in [m]/[s].
         rolling: Speed above which the puck is not even watched, in [m]/[s].
         ahead: How long it takes from a decision to the contact, about, in [s].
         tries_per_step: Candidates that are tried in one control step.
-        least_tries, most_tries: So many before a stroke is chosen; so many after which the best one must do.
-        enough: Value of a stroke that needs no more thought.
-        worthless: Value below which a stroke is not played.
+        least_tries, most_tries: So many before a push is chosen; so many after which the best one must do.
+        enough: Value of a push that needs no more thought.
+        worthless: Value below which a push is not played.
         despair: How much less will do after every search in vain.
         travel_speed, travel_acceleration: On the way round the puck, in [m]/[s] and [m]/[s²].
         gap: Between mallet and puck on that way, in [m].
-        arrived: Distance to the beginning of a stroke that will do, in [m].
+        arrived: Distance to the beginning of a push that will do, in [m].
         patience: Steps after which the way round is given up.
         seed: Of the search.
         sag: How far the iiwa's mallet, whose mass its controller does not know, hangs from its command, in [m].
@@ -122,13 +122,13 @@ class Prepare:
         )
         self._now = self._goal
         self._constants = puck_motion().constants
-        self._watch = RestWatch(float(env_info["dt"]))
+        self._watch = RestDetection(float(env_info["dt"]))
         self._restart()
         self._puck = np.array([-0.5, 0.45, 0.0, 0.0, 0.0])
         self._think(12)
         self._think_again()
         self._lies_well(self._puck, 1.0)
-        mallet_at(self._stroke, 0, np.float64(0.0))
+        mallet_at(self._push, 0, np.float64(0.0))
         self._restart()
 
     def _restart(self) -> None:
@@ -137,7 +137,7 @@ class Prepare:
         self._forget()
 
     def _forget(self) -> None:
-        self._stroke, self._value, self._tried = np.zeros(LENGTH), -2.0, 0
+        self._push, self._value, self._tried = np.zeros(LENGTH), -2.0, 0
         self._time, self._steps = 0.0, 0
 
     @property
@@ -195,8 +195,8 @@ class Prepare:
         return np.asarray(self._puck[:2] - before)
 
     def _think(self, tries: int) -> None:
-        self._stroke, self._value = search(
-            self._puck, self._stroke, self._value, self._now, self._constants, self._rng, tries
+        self._push, self._value = search(
+            self._puck, self._push, self._value, self._now, self._constants, self._rng, tries
         )
         self._tried += tries
 
@@ -204,24 +204,24 @@ class Prepare:
         p = self._parameters
         if self._tried >= p.most_tries and self._value < p.worthless - p.despair * self._rounds:
             self._forget()
-            self._rounds += 1  # rather a risky stroke than none
+            self._rounds += 1  # rather a risky push than none
             self._now = self._now._replace(doubt=0.5 * self._now.doubt)
             return False
         return self._tried >= p.most_tries or (self._tried >= p.least_tries and self._value >= p.enough)
 
     def _go_round(self, situation: Situation) -> Array:
         p = self._parameters
-        start = self._stroke[START : START + 2]
+        start = self._push[START : START + 2]
         self._steps += 1
         way = start - situation.tip
         if np.hypot(*way) < p.arrived and np.hypot(*situation.tip_velocity) < 0.02:
-            moved = self._look(float(self._stroke[RUN_UP]))
+            moved = self._look(float(self._push[RUN_UP]))
             self._aim(moved)
             if np.hypot(*moved) > p.drift:
                 self._think_again()
                 return drive(situation, np.zeros(2), p.travel_acceleration)
             self._aim(-self._sag)
-            self.phase, self._time = "strike", -self._stroke[RUN_UP]
+            self.phase, self._time = "strike", -self._push[RUN_UP]
             return self._strike(situation)
         if self._steps > p.patience:
             self.phase = "wait"
@@ -229,22 +229,22 @@ class Prepare:
         return go_to(situation, target, p.travel_speed, p.travel_acceleration)
 
     def _aim(self, moved: Array) -> None:
-        """Take the stroke along, as far as the table allows."""
+        """Take the push along, as far as the table allows."""
         for part in (PLACE, END):
-            self._stroke[part : part + 2] = np.clip(self._stroke[part : part + 2] + moved, self._lower, self._upper)
+            self._push[part : part + 2] = np.clip(self._push[part : part + 2] + moved, self._lower, self._upper)
 
     def _think_again(self) -> None:
-        """The puck lies elsewhere: begin with the stroke that was taken along."""
-        finish(self._stroke, self._now)
-        self._value = value(self._puck, self._stroke, self._now, self._constants, -2.0)
+        """The puck lies elsewhere: begin with the push that was taken along."""
+        finish(self._push, self._now)
+        self._value = value(self._puck, self._push, self._now, self._constants, -2.0)
         self._tried = max(0, self._parameters.least_tries - 3 * self._parameters.tries_per_step)
         self.phase = "think"
 
     def _strike(self, situation: Situation) -> Array:
         self._time += situation.dt
-        if self._time >= self._stroke[FOLLOW] + self._stroke[RETREAT]:
+        if self._time >= self._push[FOLLOW] + self._push[RETREAT]:
             self.phase = "wait"
-        states = np.array([mallet_at(self._stroke, axis, self._time) for axis in range(2)])
+        states = np.array([mallet_at(self._push, axis, self._time) for axis in range(2)])
         return situation.move(states[:, 0].copy(), states[:, 1].copy())
 
     def _keep_clear(self, situation: Situation) -> Array:

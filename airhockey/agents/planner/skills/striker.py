@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from airhockey.agents.planner.approach import FORESIGHT, approach
-from airhockey.agents.planner.parameters import SmashParameters
-from airhockey.agents.planner.shots import Shot
-from airhockey.agents.planner.skill import Array, Situation
-from airhockey.agents.planner.strike import Strike, run_up
+from airhockey.agents.planner.motion.approach import FORESIGHT, approach
+from airhockey.agents.planner.motion.strike import Strike, run_up
+from airhockey.agents.planner.shots.parameters import SmashParameters
+from airhockey.agents.planner.shots.shots import Shot
+from airhockey.agents.skill import Array, Situation
 
 LARGEST_OFFSET = 0.03
 """How far the mallet may be from where the strike begins, in [m]."""

@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from airhockey.agents.planner.defend import Defend
-from airhockey.agents.planner.skill import Array, Situation
+from airhockey.agents.planner.skills.defend import Defend
+from airhockey.agents.skill import Array, Situation
 
 
 class Repel(Defend):

@@ -16,15 +16,15 @@ import numpy as np
 from airhockey.agents.compiling import compiled
 from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.workspace import Workspace
-from airhockey.agents.planner.aiming import strike_normal
-from airhockey.agents.planner.flight import coast
-from airhockey.agents.planner.parameters import smash_parameters
-from airhockey.agents.planner.roll_watch import RollWatch
-from airhockey.agents.planner.rules import Rules, make_rules
-from airhockey.agents.planner.shots import FORWARD, Shot, possible, turned
-from airhockey.agents.planner.skill import Array, Situation
-from airhockey.agents.planner.strike import Strike
-from airhockey.agents.planner.striker import Striker
+from airhockey.agents.planner.estimation.rest_prediction import RestPrediction
+from airhockey.agents.planner.motion.strike import Strike
+from airhockey.agents.planner.shots.aiming import strike_normal
+from airhockey.agents.planner.shots.flight import coast
+from airhockey.agents.planner.shots.parameters import smash_parameters
+from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
+from airhockey.agents.planner.shots.shots import FORWARD, Shot, possible, turned
+from airhockey.agents.planner.skills.striker import Striker
+from airhockey.agents.skill import Array, Situation
 from airhockey.agents.table import CONTACT
 
 PLACE = np.array([0.90, 0.085])
@@ -42,7 +42,7 @@ LENIENCE = 0.1
 _DECAY = 3  # place in the constants of `PuckMotion`
 
 
-class Drop(Striker):
+class DeadPuck(Striker):
     """Phases: those of `Striker`."""
 
     name = "drop"
@@ -55,12 +55,12 @@ class Drop(Striker):
         """
         parameters = smash_parameters(spec_of(env_info))
         super().__init__(parameters, float(env_info["dt"]))
-        self._rules = make_rules(parameters, Workspace.of(env_info))
+        self._model = make_shot_model(parameters, Workspace.of(env_info))
         self._shot: Shot | None = None
         self._scouted = -1
-        self._watch = RollWatch(self._dt)
+        self._watch = RestPrediction(self._dt)
         self.forget()
-        roll(np.array([-0.5, 0.0, 0.0, 0.0, 0.0]), 1.0, PLACE, GAIN, np.array([-0.8, 0.0]), 0.1, self._rules)
+        roll(np.array([-0.5, 0.0, 0.0, 0.0, 0.0]), 1.0, PLACE, GAIN, np.array([-0.8, 0.0]), 0.1, self._model)
 
     def begin(self, situation: Situation) -> None:
         """See `Skill.begin`."""
@@ -114,9 +114,9 @@ class Drop(Striker):
     def _plan(self, situation: Situation) -> Shot | None:
         """The stroke pursued, brought up to date; where there is none, the first that is possible."""
         puck = situation.puck
-        if puck.speed > SLOW or puck.position[0] > self._rules.upper[0] + self._rules.contact:
+        if puck.speed > SLOW or puck.position[0] > self._model.upper[0] + self._model.contact:
             return None
-        path = coast(puck.state, self._dt, round(WAITS[-1] / self._dt), self._rules.motion)
+        path = coast(puck.state, self._dt, round(WAITS[-1] / self._dt), self._model.motion)
         if self._shot is not None and self._shot.wait > self._dt:
             wait, side = self._shot.wait - self._dt, self._shot.wall
             shot = self._roll(situation, path, wait, side, -LENIENCE)
@@ -125,18 +125,18 @@ class Drop(Striker):
         near = 1.0 if puck.position[1] > 0.0 else -1.0
         for wait in WAITS:
             for side in (near, -near):
-                shot = self._roll(situation, path, float(wait), side, self._rules.approach_margin)
+                shot = self._roll(situation, path, float(wait), side, self._model.approach_margin)
                 if shot.value > 0.0:
                     return shot
         return None
 
     def _roll(self, situation: Situation, path: Array, wait: float, side: float, margin: float) -> Shot:
         at_contact = path[min(round(wait / self._dt), len(path) - 1)]
-        return roll(at_contact, wait, PLACE * np.array([1.0, side]), self._gain, situation.tip, margin, self._rules)
+        return roll(at_contact, wait, PLACE * np.array([1.0, side]), self._gain, situation.tip, margin, self._model)
 
 
 @compiled
-def roll(puck: Array, wait: float, place: Array, gain: float, tip: Array, margin: float, rules: Rules) -> Shot:
+def roll(puck: Array, wait: float, place: Array, gain: float, tip: Array, margin: float, model: ShotModel) -> Shot:
     """The stroke after which the puck comes to rest at a place.
 
     Args:
@@ -146,18 +146,18 @@ def roll(puck: Array, wait: float, place: Array, gain: float, tip: Array, margin
         gain: g of the contact, as far as it is known.
         tip: Where the mallet is now, in [m]. Shape (2,).
         margin: Time to spare that the way to the stroke's beginning must leave, in [s].
-        rules: Constants.
+        model: Constants.
 
     Returns:
         Its `wall` is the sign of y; its `value` is 1, or 0 where it is impossible.
     """
     way = place - puck[:2]
     distance = np.hypot(way[0], way[1])
-    speed = rules.motion[_DECAY] * distance / gain
+    speed = model.motion[_DECAY] * distance / gain
     normal = strike_normal(puck[2:4], way / distance, speed, gain)
-    mallet = puck[:2] - rules.contact * normal
+    mallet = puck[:2] - model.contact * normal
     side = 1.0 if place[1] > 0.0 else -1.0
-    fits = puck[0] <= rules.upper[0] and normal[0] > FORWARD
-    value = 1.0 if fits and possible(mallet, normal, speed, wait - margin, tip, puck, rules) else 0.0
-    commanded = turned(normal, rules.turn)
-    return Shot(value, wait, place[1], side, speed, commanded, puck[:2] - rules.contact * commanded)
+    fits = puck[0] <= model.upper[0] and normal[0] > FORWARD
+    value = 1.0 if fits and possible(mallet, normal, speed, wait - margin, tip, puck, model) else 0.0
+    commanded = turned(normal, model.turn)
+    return Shot(value, wait, place[1], side, speed, commanded, puck[:2] - model.contact * commanded)

@@ -5,7 +5,7 @@ from math import hypot, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.planner.skill import Situation
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT
 
 Array = NDArray[np.float64]

@@ -18,7 +18,7 @@ SURE = 4.0
 """A velocity of fewer standard deviations than this is none."""
 
 
-class RestWatch:
+class RestDetection:
     """Fed with one estimated position per control step."""
 
     def __init__(self, dt: float, least: int = 10, length: int = 40) -> None:

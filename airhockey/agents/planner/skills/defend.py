@@ -18,10 +18,10 @@ from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.motion import advance, puck_motion
 from airhockey.agents.parameters import load_parameters
-from airhockey.agents.planner.contact import resting_place
-from airhockey.agents.planner.driving import drive, go_to, round_the_puck
-from airhockey.agents.planner.interception import STEP, Reach, Wish, best_meeting, meeting, puck_path
-from airhockey.agents.planner.skill import Array, Situation
+from airhockey.agents.planner.contacts.interception import STEP, CatchCost, Reach, best_meeting, meeting, puck_path
+from airhockey.agents.planner.contacts.redirection import resting_place
+from airhockey.agents.planner.motion.driving import drive, go_to, round_the_puck
+from airhockey.agents.skill import Array, Situation
 from airhockey.agents.table import CONTACT, OWN_GOAL, to_table
 
 
@@ -35,7 +35,7 @@ class ReachParameters:
 
 @dataclass(frozen=True)
 class WishParameters:
-    """See `interception.Wish`."""
+    """See `interception.CatchCost`."""
 
     near_x: float
     far_x: float
@@ -130,7 +130,7 @@ class Defend:
         self._reach = Reach(
             np.array(means.speed), np.array(means.acceleration), to_table(workspace.lower), to_table(workspace.upper)
         )
-        self._wish = Wish(**vars(p.wish), grip=spec_of(env_info).n_joints == 7)
+        self._wish = CatchCost(**vars(p.wish), grip=spec_of(env_info).n_joints == 7)
         self._constants = puck_motion().constants
         self._steps = round(p.horizon / STEP)
         self._meeting: Meeting | None = None

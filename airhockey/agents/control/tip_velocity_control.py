@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
+from airhockey.agents.control.active_set import minimise
 from airhockey.agents.control.aqp import VelocityLimits, exact_problem, is_singular, relaxed_problem
 from airhockey.agents.control.braking import box_speeds, joint_speeds
-from airhockey.agents.control.dual_qp import minimise
 from airhockey.agents.control.kinematics import chain_of, heights_and_jacobian, jacobian_of, locate
 from airhockey.agents.control.parameters import ControlParameters
 from airhockey.agents.control.speed_limit import largest_speed

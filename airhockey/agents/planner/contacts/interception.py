@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import advance
-from airhockey.agents.planner.contact import redirecting
+from airhockey.agents.planner.contacts.redirection import redirecting
 from airhockey.agents.table import CONTACT, HALF_LENGTH
 
 Array = NDArray[np.float64]
@@ -35,7 +35,7 @@ class Reach(NamedTuple):
     upper: Array
 
 
-class Wish(NamedTuple):
+class CatchCost(NamedTuple):
     """What makes a good place to catch.
 
     Attributes:
@@ -91,7 +91,7 @@ def puck_path(state: Array, steps: int, mouth: float, constants: Array) -> tuple
     Args:
         state: Of the puck now. Shape (5,).
         steps: How far to look.
-        mouth: See `Wish`.
+        mouth: See `CatchCost`.
         constants: `PuckMotion.constants`.
 
     Returns:
@@ -113,7 +113,7 @@ def puck_path(state: Array, steps: int, mouth: float, constants: Array) -> tuple
 
 
 @compiled
-def meeting(state: Array, wish: Wish) -> tuple[Array, Array]:
+def meeting(state: Array, wish: CatchCost) -> tuple[Array, Array]:
     """Where the mallet's centre is and how it moves when it catches (or returns) a puck. Shapes (2,), (2,)."""
     leaving = np.zeros(2)
     if wish.return_speed > 0.0:
@@ -168,7 +168,7 @@ def best_meeting(
     tip: Array,
     tip_velocity: Array,
     reach: Reach,
-    wish: Wish,
+    wish: CatchCost,
     present: int,
 ) -> tuple[int, float, float]:
     """The best point of a puck's path to catch it at.

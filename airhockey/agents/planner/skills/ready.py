@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from math import hypot
 from typing import Any
 
-from airhockey.agents.planner.skill import Array, Situation
+from airhockey.agents.skill import Array, Situation
 from airhockey.agents.table import HOME
 
 FULL_SPEED = 0.8

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from results import ENV, EPISODES, Results
 
-from airhockey.evaluator.analysis.shots import read_game
+from airhockey.evaluator.analysis.game import analyse_game
 from airhockey.evaluator.evaluation import report as evaluators_report
 from airhockey.evaluator.judging.tasks import wilson_interval
 from airhockey.evaluator.runs.game_records import Event, GameJob, GameRecord, PlayerResult
@@ -220,7 +220,7 @@ def test_goals_of_the_film_are_those_of_the_referee(tmp_path: Path) -> None:
         events=(*events, goal),
     )
     write_film(tmp_path / "film.h5", rows[:over], b"{}")
-    data = read_game(tmp_path / "film.h5", record)
+    data = analyse_game(tmp_path / "film.h5", record)
     assert [(shot.side, shot.outcome) for shot in data.shots] == [("home", "goal")]
     assert data.shots[0].speed == pytest.approx(3.0)
     assert data.touches == (1, 0)

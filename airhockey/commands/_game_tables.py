@@ -85,7 +85,20 @@ def print_standings(console: Console, table: Standings) -> None:
     """Print the standings of a tournament."""
     title = f"standings after {table.played} of {table.games} games"
     shown = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
-    for name in ("#", "entry", "played", "won", "drawn", "lost", "goals", "diff.", "points", "penalty", "rating"):
+    for name in (
+        "#",
+        "entry",
+        "played",
+        "won",
+        "drawn",
+        "lost",
+        "points",
+        "score",
+        "goals",
+        "by faults",
+        "penalty",
+        "rating",
+    ):
         shown.add_column(name, justify="left" if name == "entry" else "right")
     for row in table.rows:
         shown.add_row(
@@ -95,9 +108,10 @@ def print_standings(console: Console, table: Standings) -> None:
             str(row.won),
             str(row.drawn),
             str(row.lost),
-            f"{row.goals}:{row.conceded}",
-            f"{row.difference:+d}",
             str(row.points),
+            f"{row.points_for}:{row.points_against}",
+            f"{row.goals}:{row.conceded}",
+            str(row.by_faults),
             f"{row.penalty:g}",
             f"{row.rating:.1f} ± {row.uncertainty:.1f}",
         )

@@ -4,13 +4,11 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from airhockey.envs.editions import Deployability, edition
+from airhockey.envs.editions import edition
 from airhockey.evaluator import RunResult, TaskResult
 from airhockey.evaluator.evaluation import failure_reasons
-from airhockey.evaluator.judging.tasks import wilson_interval
+from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES, official_class, wilson_interval
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
-
-OFFICIAL_EPISODES = 1000  # what the limits of the deployability classes are made for
 
 
 def print_result(result: TaskResult | RunResult, folder: EpisodeFolder) -> None:
@@ -30,7 +28,7 @@ def print_result(result: TaskResult | RunResult, folder: EpisodeFolder) -> None:
 
 def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
     options = folder.manifest.options
-    rules = edition(options.edition).deployability
+    rules = edition(options.edition)
     title = f"agent {options.agent}, {options.episodes} episodes, disturbances {options.disturbances}"
     table = Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("")
@@ -40,21 +38,19 @@ def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
     table.add_row("  95 % interval", *map(_interval, tasks))
     for name in dict.fromkeys(name for task in tasks for name in task.violations):
         table.add_row(f"episodes violating {name}", *(str(task.violations.get(name, "–")) for task in tasks))
+    table.add_row("episodes violating computation_time", *(str(task.late) for task in tasks))
     table.add_row("penalty points", *(f"{task.penalty:g}" for task in tasks))
     table.add_row("deployability", *(task.deployability for task in tasks))
     if options.episodes != OFFICIAL_EPISODES:
         table.add_row(
-            f"  at this rate, {OFFICIAL_EPISODES} episodes", *(_official_class(task, rules) for task in tasks)
+            f"  at this rate, {OFFICIAL_EPISODES} episodes",
+            *(official_class(task.penalty, task.episodes, rules) for task in tasks),
         )
     for name in ("mean", "p99", "max"):
         label = f"draw_action {name}, {options.clock} clock"
         table.add_row(label, *(f"{getattr(task.computation_time, name) * 1e3:.3f} ms" for task in tasks))
     table.add_row("episodes failed by the agent", *(str(task.agent_errors) for task in tasks))
     return table
-
-
-def _official_class(task: TaskResult, rules: Deployability) -> str:
-    return rules.class_of(task.penalty * OFFICIAL_EPISODES / task.episodes)
 
 
 def _interval(task: TaskResult) -> str:

@@ -97,11 +97,11 @@ def test_a_name_or_an_error_of_others_stays_text(results: Results) -> None:
 def test_the_summary_says_what_the_evaluator_says(results: Results) -> None:
     expected: Any = evaluators_report(results.swings)
     task = task_of(results.swings)
-    assert (task.success, task.penalty) == (expected.success, expected.penalty)
+    assert (task.verdict.success, task.verdict.penalty) == (expected.success, expected.penalty)
     assert task.violations.items() >= expected.violations.items()
-    assert task.failures == expected.agent_errors == EPISODES // 4
+    assert task.verdict.failures == expected.agent_errors == EPISODES // 4
     said = words_of(report([results.swings])[0])
-    low, high = wilson_interval(task.successes, EPISODES)
+    low, high = wilson_interval(task.verdict.successes, EPISODES)
     for text in (f"{expected.success:.1%}", f"{low:.1%} – {high:.1%}", f"{expected.penalty:g}", "numba", "seed 3"):
         assert text in said
 

@@ -71,7 +71,8 @@ def measure(robot: str, task: str, rounds: int, candidates: int, episodes: int) 
     )
     trained: list[float] = []
     with tempfile.TemporaryDirectory() as folder:
-        options = Options(environments=(f"{robot}-{task}",), episodes=candidates * episodes * (rounds + WARM_UP))
+        count = candidates * episodes * (rounds + WARM_UP)
+        options = Options(environments=(f"{robot}-{task}",), agent="thesis", episodes=count)
         evaluation = Evaluation(options, Path(folder) / "evaluation", candidates * episodes)
         began = time.process_time()
 

@@ -20,14 +20,13 @@ from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, Option
 from airhockey.evaluator.runs.trajectories import TRAJECTORIES, read_steps
 
 OnEpisode = Callable[[EpisodeRecord], None]
+Result = TaskResult | RunResult
 
 begin = EpisodeFolder.begin
 resume = EpisodeFolder.resume
 
 
-def evaluate(
-    folder: EpisodeFolder, engine: Engine | None = None, on_episode: OnEpisode | None = None
-) -> TaskResult | RunResult:
+def evaluate(folder: EpisodeFolder, engine: Engine | None = None, on_episode: OnEpisode | None = None) -> Result:
     """Play the episodes of a run that are not played yet, and report on all of them.
 
     Args:
@@ -74,7 +73,7 @@ def jobs(options: Options) -> list[Job]:
     return [Job(env, index) for env in options.environments for index in range(options.episodes)]
 
 
-def report(path: Path) -> TaskResult | RunResult:
+def report(path: Path) -> Result:
     """The result of a finished run, from what it stored: of its task, or of its tasks and the whole.
 
     Args:

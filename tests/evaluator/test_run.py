@@ -99,7 +99,7 @@ def test_killed_and_resumed(options: Options, tmp_path: Path) -> None:
 
 def test_another_run_is_not_taken_up(options: Options, one_job: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     resume(one_job, {"seed": 3, "disturbances": "server"}).__exit__()
-    for name, value in {"seed": 4, "episodes": 7, "clock": "cpu", "disturbances": "harsh", "agent": "hold"}.items():
+    for name, value in {"seed": 4, "episodes": 7, "clock": "wall", "disturbances": "harsh", "agent": "hold"}.items():
         with pytest.raises(ConfigurationError, match=f"has {name}"):
             resume(one_job, {name: value})
     monkeypatch.setattr("airhockey.envs.versions", lambda: {"mujoco": "5.0.0"})

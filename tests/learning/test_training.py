@@ -16,10 +16,10 @@ from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.errors import AirHockeyError, ConfigurationError
 from airhockey.evaluator.engines.engine import InProcess, Processes
 from airhockey.evaluator.runs.journal import read_journal
+from airhockey.learning.diverged import DivergedError
 from airhockey.learning.pgpe import training
 from airhockey.learning.pgpe.records import Iteration, Outcome, RolloutJob, Settings
 from airhockey.learning.pgpe.rollouts import Rollouts
-from airhockey.learning.pgpe.search import DivergedError
 from airhockey.learning.pgpe.trainable import ranges, read, replaced
 
 TUNED = thesis_parameters("tuned")

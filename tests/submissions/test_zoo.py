@@ -70,7 +70,7 @@ def gone(agent: IsolatedAgent) -> bool:
     ("kind", "text", "where"),
     [
         (AgentRaised, "ZeroDivisionError", {"importing": "1 / 0"}),
-        (AgentRaised, "pip install nowhere_to_be_found", {"importing": "import nowhere_to_be_found"}),
+        (AgentRaised, "neither a file of the submission nor a package", {"importing": "import nowhere_to_be_found"}),
         (AgentRaised, "SystemExit", {"building": "sys.exit(3)"}),
         (AgentDied, "exit status 7.*last words: farewell", {"building": "print('farewell'); os._exit(7)"}),
     ],

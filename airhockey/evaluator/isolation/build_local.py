@@ -1,5 +1,6 @@
 """Where an agent of a child process is made: from an environment's name to the agent and its `env_info`."""
 
+from pathlib import Path
 from typing import Any
 
 
@@ -28,7 +29,7 @@ def build_with_compatibility(agent: str, env_info: dict[str, Any], agent_id: int
     from airhockey.agents.submission import is_submission
 
     if is_submission(agent):
-        from airhockey import compat
+        from airhockey.compat import build_entry
 
-        compat.install()
+        return build_entry(Path(agent).expanduser(), env_info, agent_id, **kwargs)
     return build_agent(agent, env_info, agent_id=agent_id, **kwargs)

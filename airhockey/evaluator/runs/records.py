@@ -31,12 +31,12 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     """
 
     environments: tuple[str, ...]
-    agent: str = "thesis"
+    agent: str = "planner"
     episodes: int = 1000
     seed: int = 0
     disturbances: str = "ideal"
     interpolation_order: Order = "agent"
-    clock: Literal["wall", "cpu"] = "wall"
+    clock: Literal["wall", "cpu"] = "cpu"
     edition: str = "2023"
     isolate: Literal["none", "process", "sandbox"] = "none"
     patience: float = 60.0

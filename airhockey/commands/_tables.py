@@ -6,11 +6,11 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from airhockey.envs.editions import Deployability, edition
+from airhockey.envs.editions import edition
 from airhockey.evaluator import RunResult, TaskResult
 from airhockey.evaluator.evaluation import failure_reasons
 from airhockey.evaluator.judging.standings import Standings
-from airhockey.evaluator.judging.tasks import wilson_interval
+from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES, official_class, wilson_interval
 from airhockey.evaluator.match import GameResult, MatchFolder, MatchResult
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 from airhockey.evaluator.runs.folder import RunFolder
@@ -18,7 +18,6 @@ from airhockey.evaluator.runs.game_records import Event
 
 _WIDTH = 130
 _FEW = 8  # events of a game that are shown when several games were played
-OFFICIAL_EPISODES = 1000  # what the limits of the deployability classes are made for
 
 
 def output() -> Console:
@@ -42,7 +41,7 @@ def print_result(result: TaskResult | RunResult, folder: EpisodeFolder) -> None:
 
 def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
     options = folder.manifest.options
-    rules = edition(options.edition).deployability
+    rules = edition(options.edition)
     title = f"agent {options.agent}, {options.episodes} episodes, disturbances {options.disturbances}"
     table = _titled(title)
     table.add_column("")
@@ -52,29 +51,19 @@ def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
     table.add_row("  95 % interval", *map(_interval, tasks))
     for name in dict.fromkeys(name for task in tasks for name in task.violations):
         table.add_row(f"episodes violating {name}", *(str(task.violations.get(name, "–")) for task in tasks))
-    table.add_row("episodes violating computation_time", *(str(_late_episodes(task.env, folder)) for task in tasks))
+    table.add_row("episodes violating computation_time", *(str(task.late) for task in tasks))
     table.add_row("penalty points", *(f"{task.penalty:g}" for task in tasks))
     table.add_row("deployability", *(task.deployability for task in tasks))
     if options.episodes != OFFICIAL_EPISODES:
         table.add_row(
-            f"  at this rate, {OFFICIAL_EPISODES} episodes", *(_official_class(task, rules) for task in tasks)
+            f"  at this rate, {OFFICIAL_EPISODES} episodes",
+            *(official_class(task.penalty, task.episodes, rules) for task in tasks),
         )
     for name in ("mean", "p99", "max"):
         label = f"draw_action {name}, {options.clock} clock"
         table.add_row(label, *(f"{getattr(task.computation_time, name) * 1e3:.3f} ms" for task in tasks))
     table.add_row("episodes failed by the agent", *(str(task.agent_errors) for task in tasks))
     return table
-
-
-def _official_class(task: TaskResult, rules: Deployability) -> str:
-    return rules.class_of(task.penalty * OFFICIAL_EPISODES / task.episodes)
-
-
-def _late_episodes(env: str, folder: EpisodeFolder) -> int:
-    """The number of episodes that got penalty points for their computation time."""
-    rules = edition(folder.manifest.options.edition)
-    times = (record.computation_time for record in folder.records if record.env == env)
-    return sum(rules.time_penalty(time.max, time.mean) > 0.0 for time in times)
 
 
 def _interval(task: TaskResult) -> str:
@@ -144,7 +133,20 @@ def print_standings(console: Console, table: Standings) -> None:
     """Print the standings of a tournament."""
     title = f"standings after {table.played} of {table.games} games"
     shown = _titled(title)
-    for name in ("#", "entry", "played", "won", "drawn", "lost", "goals", "diff.", "points", "penalty", "rating"):
+    for name in (
+        "#",
+        "entry",
+        "played",
+        "won",
+        "drawn",
+        "lost",
+        "points",
+        "score",
+        "goals",
+        "by faults",
+        "penalty",
+        "rating",
+    ):
         shown.add_column(name, justify="left" if name == "entry" else "right")
     for row in table.rows:
         shown.add_row(
@@ -154,9 +156,10 @@ def print_standings(console: Console, table: Standings) -> None:
             str(row.won),
             str(row.drawn),
             str(row.lost),
-            f"{row.goals}:{row.conceded}",
-            f"{row.difference:+d}",
             str(row.points),
+            f"{row.points_for}:{row.points_against}",
+            f"{row.goals}:{row.conceded}",
+            str(row.by_faults),
             f"{row.penalty:g}",
             f"{row.rating:.1f} ± {row.uncertainty:.1f}",
         )

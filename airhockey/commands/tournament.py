@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def tournament(ctx: click.RichContext, /, **given: Any) -> None:
     """Play a tournament: a double round robin of whole games, with standings and ratings after each.
 
-    3 points for a win, 1 for a draw; ties are broken by goal difference, goals, points of the games among those tied,
+    3 points for a win, 1 for a draw; ties are broken by the score: difference, then points; by the games among those tied,
     fewer penalty points, name. With --resume a tournament that was stopped goes on, and one that is finished can be
     extended: by entries, or by --phases 2 with or without --replace. Only the missing games are played. Exit status 3: an
     entry failed games, and so lost them.

@@ -98,20 +98,20 @@ def failure_reasons(path: Path, most: int = 3) -> list[tuple[str, int]]:
 
 
 def _task_result(path: Path, options: Options, env: str, records: list[EpisodeRecord]) -> TaskResult:
-    rules = edition(options.edition)
-    points = sum(judging.penalty(record, rules) for record in records)
+    verdict = judging.judge(records, edition(options.edition))
     return TaskResult(
         env=env,
         agent=options.agent,
-        episodes=len(records),
+        episodes=verdict.episodes,
         seed=options.seed,
         disturbances=options.disturbances,
-        success=sum(record.success for record in records) / len(records),
-        penalty=points,
-        deployability=rules.deployability.class_of(points),
-        violations=judging.violated_episodes(records),
+        success=verdict.success,
+        penalty=verdict.penalty,
+        deployability=verdict.deployability,
+        violations=verdict.violations,
+        late=verdict.late,
         computation_time=_run_time(read_steps(path / TRAJECTORIES, env, "computation_time")),
-        agent_errors=sum(record.error is not None for record in records),
+        agent_errors=verdict.failures,
     )
 
 

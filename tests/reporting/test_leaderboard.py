@@ -63,7 +63,7 @@ def test_a_better_class_comes_first_then_success_then_fewer_points() -> None:
     ]
     (board,) = boards(tasks)
     assert [name for name, _ in board.ranked(HIT)] == ["c", "a", "b", "perfect but dangerous"]
-    assert [t.deployability for _, t in board.ranked(HIT)] == ["Deployable"] * 3 + ["Non-deployable"]
+    assert [t.verdict.official_class for _, t in board.ranked(HIT)] == ["Deployable"] * 3 + ["Non-deployable"]
 
 
 def test_the_largest_run_up_to_1000_episodes_counts_and_of_those_the_latest() -> None:

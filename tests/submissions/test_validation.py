@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from submission_examples import SUBMISSIONS
+from tools import needs_opencv
 
 from airhockey.agents.packaging.packing import pack
 from airhockey.evaluator.isolation.limits import Limits
@@ -52,6 +53,7 @@ agent.stop()
 """
     if importlib.util.find_spec("mushroom_rl") is None:
         pytest.skip("needs the extra mushroom")
+    needs_opencv()
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
 
 

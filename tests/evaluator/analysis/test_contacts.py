@@ -1,12 +1,11 @@
-"""Hits and shots: on collisions that were computed, on a bounced path, and on what a game's referee recorded."""
+"""Contacts and hits, on collisions that were computed."""
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from airhockey.envs.specs import CONTROL_PERIOD, MALLET, PUCK, TABLE
-from airhockey.evaluator.analysis.contacts import contacts, last_of_each
-from airhockey.evaluator.analysis.shots import on_target
+from airhockey.envs.specs import CONTROL_PERIOD, MALLET, PUCK
+from airhockey.evaluator.analysis.contacts import contacts, hits
 
 Array = NDArray[np.float64]
 REACH = PUCK.radius + MALLET.radius
@@ -53,31 +52,8 @@ def test_free_flight_friction_and_rims_are_no_contacts() -> None:
 
 def test_touches_within_three_steps_are_one_hit_unless_a_part_begins() -> None:
     touching = np.array([0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 1], dtype=bool)
-    assert last_of_each(touching, np.zeros(12, dtype=bool)).tolist() == [2, 5, 11]
+    assert hits(touching, np.zeros(12, dtype=bool)).tolist() == [[1, 2], [5, 5], [9, 11]]
     begins = np.arange(12) == 11
-    assert last_of_each(touching, begins).tolist() == [2, 5, 10, 11]
-    assert last_of_each(np.array([1, 0, 1, 0], dtype=bool), np.zeros(4, dtype=bool)).tolist() == [2]
-    assert last_of_each(np.zeros(4, dtype=bool), np.zeros(4, dtype=bool)).size == 0
-
-
-def test_on_target_is_where_a_bouncing_path_ends() -> None:
-    """The path is followed in small steps, reflected at the rims."""
-    random = np.random.default_rng(0)
-    half, right = TABLE.width / 2 - PUCK.radius, TABLE.length / 2
-    hits = 0
-    for _ in range(60):
-        x, y, speed_x, speed_y = random.uniform([-0.2, -0.4, 0.5, -3.0], [0.2, 0.4, 2.0, 3.0])
-        expected_y, velocity_y, time = y, speed_y, (right - x) / speed_x
-        for _ in range(5000):
-            expected_y += velocity_y * time / 5000
-            if abs(expected_y) > half:
-                expected_y = np.sign(expected_y) * 2 * half - expected_y
-                velocity_y = -velocity_y
-        if abs(abs(expected_y) - TABLE.goal_width / 2) < 1e-6:
-            continue
-        inside = abs(expected_y) < TABLE.goal_width / 2
-        hits += inside
-        assert on_target(np.array([x, y, 0.0, speed_x, speed_y, 0.0]), 1.0) == inside
-        assert on_target(np.array([-x, -y, 0.0, -speed_x, -speed_y, 0.0]), -1.0) == inside
-    assert 5 < hits < 55
-    assert not on_target(np.array([0.0, 0.0, 0.0, -1.0, 0.0, 0.0]), 1.0)
+    assert hits(touching, begins).tolist() == [[1, 2], [5, 5], [9, 10], [11, 11]]
+    assert hits(np.array([1, 0, 1, 0], dtype=bool), np.zeros(4, dtype=bool)).tolist() == [[0, 2]]
+    assert hits(np.zeros(4, dtype=bool), np.zeros(4, dtype=bool)).shape == (0, 2)

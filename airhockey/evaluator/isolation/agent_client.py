@@ -26,7 +26,7 @@ from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.isolation.launch import Launch
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.output import Output, printable
-from airhockey.evaluator.isolation.pids import first_inside, only_child
+from airhockey.evaluator.isolation.pids import cpu_time, descendants, first_inside, only_child
 from airhockey.evaluator.isolation.shared_core import SharedCore
 
 Array = NDArray[np.float64]
@@ -110,10 +110,17 @@ class IsolatedAgent(AgentHandle):
 
     def cpu_clock(self) -> float:
         """CPU time that its process has used, in [s]; 0 once it has ended."""
-        try:
-            return time.clock_gettime((~self._pid << 3) | 2)  # what clock_getcpuclockid gives
-        except OSError:
-            return 0.0
+        return cpu_time(self._pid)
+
+    def cpu_time_of_all(self) -> float:
+        """CPU time that its process and everything that it started have used, in [s]."""
+        return sum(cpu_time(pid) for pid in (self._pid, *descendants(self._pid)))
+
+    def thinks_for(self, seconds: float) -> float:
+        """Wait so long; gives the CPU time that it used meanwhile, though nobody asked it anything, in [s]."""
+        before = self.cpu_time_of_all()
+        time.sleep(seconds)
+        return max(self.cpu_time_of_all() - before, 0.0)
 
     def stop(self) -> None:
         """Tell the agent that it is over, and end its process."""

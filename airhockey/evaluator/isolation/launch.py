@@ -8,12 +8,14 @@ import site
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import airhockey
+from airhockey.agents.packaging.checkout import PACKAGE, Checkout
 from airhockey.evaluator.engines.workers import ONE_THREAD
+from airhockey.evaluator.isolation.interpreters import FOREIGN, Interpreter
 from airhockey.evaluator.isolation.limits import Limits
 
 BWRAP = "bwrap"
@@ -21,6 +23,7 @@ SUBMISSION = "/submission"
 SCRATCH = "/tmp"
 _SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64")
 _SETTINGS = ("/etc/ld.so.cache", "/etc/ld.so.conf", "/etc/ld.so.conf.d", "/etc/alternatives", "/etc/localtime")
+_NOT_NEEDED = (".git", ".venv", "__pycache__", "node_modules")  # of a checkout, by agents
 _FIRST_USER, _USERS = 1 << 30, 1 << 29
 
 
@@ -47,41 +50,36 @@ class Launch:
     temporary_folders: list[str] = field(default_factory=list)
 
 
-def plain(folder: Path | None) -> Launch:
+def plain(checkout: Checkout | None, own: Interpreter | None = None) -> Launch:
     """A child that only has limits.
 
     Args:
-        folder: The submission's, with `agent_builder.py`; None for a player of the registry.
+        checkout: The submission; None for a player of the registry.
+        own: The interpreter that it brings; None for ours.
     """
     scratch = tempfile.mkdtemp(prefix="airhockey-scratch-")
-    start = scratch if folder is None else str(folder.parent if folder.name == "air_hockey_agent" else folder)
-    name = None if folder is None else str(folder)
-    return Launch(_python(), environment(scratch), start, name, temporary_folders=[scratch])
+    start, name = (scratch, None) if checkout is None else (str(checkout.root), str(checkout.package))
+    return Launch(_python(own), environment(scratch, own), start, name, temporary_folders=[scratch])
 
 
-def sandboxed(folder: Path | None, limits: Limits) -> Launch:
-    """A child that sees the software, its submission and a scratch folder in memory; no network, no other process.
+def sandboxed(checkout: Checkout | None, limits: Limits, own: Interpreter | None = None) -> Launch:
+    """A child that sees the software, the root of its submission and a scratch folder in memory; no network, no other process.
 
     A root who starts it becomes a user of no rights, and of a number that nobody else has: the kernel counts no processes of
     root's. Everybody else gets a user namespace, with a count of its own.
     """
     temporary_folders: list[str] = []
-    command = [BWRAP, *_namespaces(), *_file_system(limits.scratch)]
-    inside = None
-    if folder is not None:
-        inside = f"{SUBMISSION}/air_hockey_agent"
-        command += [
-            "--perms",
-            "0755",
-            "--dir",
-            SUBMISSION,
-            "--ro-bind",
-            str(_readable(folder, temporary_folders)),
-            inside,
-        ]
-    command += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/" if folder is None else SUBMISSION, "--"]
+    command = [BWRAP, *_namespaces(), *_file_system(limits.scratch, own)]
+    start, inside = "/", None
+    if checkout is not None:
+        alone = checkout.root == checkout.package
+        start = inside = f"{SUBMISSION}/{PACKAGE}" if alone else SUBMISSION
+        folder = str(_readable(checkout.root, temporary_folders))
+        command += ["--perms", "0755", "--dir", SUBMISSION] if alone else []
+        command += ["--ro-bind", folder, inside]
+    command += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", start, "--"]
     user = _FIRST_USER + secrets.randbelow(_USERS) if is_root() else None
-    return Launch([*command, *_python()], environment(SCRATCH), "/", inside, user, True, temporary_folders)
+    return Launch([*command, *_python(own)], environment(SCRATCH, own), "/", inside, user, True, temporary_folders)
 
 
 @functools.cache
@@ -99,10 +97,10 @@ def why_no_sandbox() -> str | None:
     return None
 
 
-def environment(scratch: str) -> dict[str, str]:
-    """The child's environment: nothing of the evaluator's but where software is found."""
+def environment(scratch: str, own: Interpreter | None = None) -> dict[str, str]:
+    """The child's environment: nothing of the evaluator's but where software is found, and that only for our interpreter."""
     user_site = [site.getusersitepackages()] if site.ENABLE_USER_SITE else []
-    return {
+    ours = {
         "PATH": "/usr/local/bin:/usr/bin:/bin",
         "HOME": scratch,
         "TMPDIR": scratch,
@@ -117,6 +115,9 @@ def environment(scratch: str) -> dict[str, str]:
         ),
         **ONE_THREAD,
     }
+    if own is not None:
+        del ours["PYTHONPATH"], ours["NUMBA_CACHE_LOCATOR_CLASSES"]
+    return ours
 
 
 @functools.cache
@@ -126,7 +127,9 @@ def is_root() -> bool:
         return os.geteuid() == 0 and users.read().split()[:3] == ["0", "0", "4294967295"]
 
 
-def _python() -> list[str]:
+def _python(own: Interpreter | None = None) -> list[str]:
+    if own is not None:
+        return [own.path, "-I", str(FOREIGN)]
     return [sys.executable, "-P", "-m", "airhockey.evaluator.isolation.agent_process"]
 
 
@@ -139,7 +142,7 @@ def _namespaces() -> list[str]:
     return [*apart, *rights, "--die-with-parent", "--new-session"]
 
 
-def _file_system(scratch: int) -> list[str]:
+def _file_system(scratch: int, own: Interpreter | None = None) -> list[str]:
     """Arguments that show the system's software and Python's, read-only, and folders in memory to write to."""
     arguments: list[str] = []
     for place in _SYSTEM:
@@ -149,15 +152,15 @@ def _file_system(scratch: int) -> list[str]:
             arguments += ["--ro-bind", place, place]
     for place in _SETTINGS:
         arguments += ["--ro-bind-try", place, place]
-    folders = _python_folders()
-    above = {parent for place in folders for parent in Path(place).parents if str(parent) not in ("/", *_SYSTEM)}
+    arguments += ["--proc", "/proc", "--dev", "/dev"]
+    for place in (SCRATCH, "/dev/shm"):
+        arguments += ["--perms", "1777", "--size", str(scratch), "--tmpfs", place]
+    folders = _python_folders() if own is None else _outermost([*own.folders, str(FOREIGN.parent)])
+    above = {parent for place in folders for parent in Path(place).parents if str(parent) not in ("/", SCRATCH, *_SYSTEM)}
     for parent in sorted(above):
         arguments += ["--perms", "0755", "--dir", str(parent)]  # empty but for what is shown, and open to everybody
     for place in folders:
         arguments += ["--ro-bind", place, place]
-    arguments += ["--proc", "/proc", "--dev", "/dev"]
-    for place in (SCRATCH, "/dev/shm"):
-        arguments += ["--perms", "1777", "--size", str(scratch), "--tmpfs", place]
     return arguments
 
 
@@ -166,6 +169,11 @@ def _python_folders() -> Sequence[str]:
     folders = [sys.prefix, sys.base_prefix, *site.getsitepackages(), str(_package())]
     if site.ENABLE_USER_SITE:
         folders.append(site.getusersitepackages())
+    return _outermost(folders)
+
+
+def _outermost(folders: Sequence[str]) -> list[str]:
+    """Those that exist, lie outside the system's folders, and in none of the others."""
     there = [Path(folder) for folder in dict.fromkeys(folders) if os.path.isdir(folder)]
     outside = [folder for folder in there if not any(folder.is_relative_to(place) for place in _SYSTEM)]
     outermost = [folder for folder in outside if not any(folder.is_relative_to(o) and folder != o for o in outside)]
@@ -177,12 +185,20 @@ def _package() -> Path:
 
 
 def _readable(folder: Path, temporary_folders: list[str]) -> Path:
-    """The folder, or a copy where another user could not read it."""
-    if not is_root() or all(path.stat().st_mode & 0o004 for path in (folder, *folder.rglob("*")) if path.exists()):
+    """The folder, or a copy where another user could not read it; what no agent needs is not looked at."""
+    if not is_root() or all(path.stat().st_mode & 0o004 for path in (folder, *_needed(folder)) if path.exists()):
         return folder
     copy = Path(tempfile.mkdtemp(prefix="airhockey-submission-"))
     temporary_folders.append(str(copy))
-    shutil.copytree(folder, copy / "air_hockey_agent")
+    shutil.copytree(folder, copy / "entry", ignore=shutil.ignore_patterns(*_NOT_NEEDED))
     for path in (copy, *copy.rglob("*")):
         path.chmod(0o755 if path.is_dir() else 0o644)
-    return copy / "air_hockey_agent"
+    return copy / "entry"
+
+
+def _needed(folder: Path) -> Iterator[Path]:
+    for path in folder.iterdir():
+        if path.name not in _NOT_NEEDED:
+            yield path
+            if path.is_dir() and not path.is_symlink():
+                yield from _needed(path)

@@ -156,7 +156,9 @@ def _file_system(scratch: int, own: Interpreter | None = None) -> list[str]:
     for place in (SCRATCH, "/dev/shm"):
         arguments += ["--perms", "1777", "--size", str(scratch), "--tmpfs", place]
     folders = _python_folders() if own is None else _outermost([*own.folders, str(FOREIGN.parent)])
-    above = {parent for place in folders for parent in Path(place).parents if str(parent) not in ("/", SCRATCH, *_SYSTEM)}
+    above = {
+        parent for place in folders for parent in Path(place).parents if str(parent) not in ("/", SCRATCH, *_SYSTEM)
+    }
     for parent in sorted(above):
         arguments += ["--perms", "0755", "--dir", str(parent)]  # empty but for what is shown, and open to everybody
     for place in folders:

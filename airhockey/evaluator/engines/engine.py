@@ -12,12 +12,9 @@ import abc
 from collections.abc import Callable, Generator, Iterable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Generic, Protocol, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 from airhockey.evaluator.engines.workers import close
-
-if TYPE_CHECKING:
-    from airhockey.evaluator.engines.processes import Processes
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")
@@ -77,10 +74,3 @@ class _InProcessPool(Pool[Job, Result]):
 
     def __exit__(self, *_: object) -> None:
         close(self.function)
-
-
-def engine_for(jobs: int) -> "InProcess | Processes":
-    """The engine for a number of parallel jobs."""
-    from airhockey.evaluator.engines.processes import Processes
-
-    return InProcess() if jobs == 1 else Processes(jobs)

@@ -21,8 +21,9 @@ from typing import Any, TypeVar
 
 from airhockey import envs
 from airhockey.errors import AirHockeyError, ConfigurationError, MissingDependencyError
-from airhockey.evaluator.engines.engine import Engine, JobFailed
-from airhockey.evaluator.engines.processes import Processes, engine_for
+from airhockey.evaluator.engines.engine import Engine, engine_for
+from airhockey.evaluator.engines.pool import JobFailed
+from airhockey.evaluator.engines.processes import Processes
 from airhockey.evaluator.engines.workers import ONE_THREAD, close
 
 Job = TypeVar("Job")

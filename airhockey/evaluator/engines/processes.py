@@ -6,7 +6,7 @@ from multiprocessing import connection
 from typing import Any, TypeVar
 
 from airhockey.errors import AirHockeyError
-from airhockey.evaluator.engines.engine import InProcess, JobFailed, Pool
+from airhockey.evaluator.engines.pool import JobFailed, Pool
 from airhockey.evaluator.engines.workers import Task, Worker
 
 Job = TypeVar("Job")
@@ -105,8 +105,3 @@ class _WorkerPool(Pool[Any, Any]):
             self._retries.append(worker.task)
         else:
             yield worker.task.job, JobFailed(f"the worker process died {worker.task.attempt} times over it ({reason})")
-
-
-def engine_for(jobs: int) -> InProcess | Processes:
-    """The engine for a number of parallel jobs."""
-    return InProcess() if jobs == 1 else Processes(jobs)

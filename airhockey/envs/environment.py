@@ -13,7 +13,7 @@ from airhockey.envs.copying import Copyable
 from airhockey.envs.disturbances import Disturbances, Mismatch, load_disturbances
 from airhockey.envs.editions import ROBOTS, Edition, edition
 from airhockey.envs.info import make_env_info
-from airhockey.envs.kernel.memory import pack, view
+from airhockey.envs.kernel.memory import bytes_from, pack, view
 from airhockey.envs.kernel.opponent import ORDER as OPPONENT_ORDER
 from airhockey.envs.perception import Perception
 from airhockey.envs.plant_mismatch import PlantMismatch
@@ -145,8 +145,13 @@ class Environment(Copyable):
         self._mismatch = PlantMismatch(self.simulation.model, robot, self.n_agents)
         self._blurred = self.disturbances.blurs_observations
         self._perceptions = [Perception(self.disturbances, robot.n_joints) for _ in range(self.n_players)]
+        self._start_is_own = True
+        self._episode: Episode | None = None
         self._draws_at_steps = self._blurred or self.disturbances.torque > 0.0
         self._made_for = (name, tuple(orders), edition_name, self.disturbances)
+        self._start_random = np.random.RandomState(0)
+        self._plant_random = np.random.default_rng(0)
+        self._perception_randoms: list[np.random.Generator] = []
         self._seed_streams(np.random.SeedSequence())
         self.reset()
 
@@ -236,15 +241,16 @@ class Environment(Copyable):
 
     def get_state(self) -> State:
         """The present moment; what it holds is its own, and is not changed by anything that the environment does later."""
-        if self._episode is None or not self._start_is_own:
+        episode = self._episode
+        if episode is None or not self._start_is_own:
             streams = None if self._draws_at_steps else self._save_streams()
-            self._episode = Episode(self._start_random.get_state(), streams, self._mismatch.save())
+            episode = self._episode = Episode(self._start_random.get_state(), streams, self._mismatch.save())
         return State(
             self._made_for,
             self.simulation.save(),
             self._played.copy(),
             (self.step_count, self.verdict, self.succeeded),
-            self._episode,
+            episode,
             self._save_streams() if self._draws_at_steps else None,
         )
 
@@ -357,8 +363,7 @@ class Environment(Copyable):
     def _make_views(self) -> None:
         """Views of what Python and compiled code share."""
         self.game: Game = view(self._referee, Game)
-        first = self._referee.dtype.fields[Game._fields[0]][1]
-        self._played = self._referee.view(np.uint8)[first:]
+        self._played = bytes_from(self._referee, Game)
         self._slots = [self._action[r, : form.rows].reshape(form.shape) for r, form in enumerate(self.formats)]
 
     def _make_slices(self) -> None:

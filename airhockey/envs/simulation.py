@@ -17,7 +17,7 @@ from airhockey.envs.kernel.control_step import BAD_ACTION, DONE, Players, contro
 from airhockey.envs.kernel.controller import Controller, filter_velocity, new_controller
 from airhockey.envs.kernel.engine import last_warnings
 from airhockey.envs.kernel.kinematics import WorkSpace, link_rotations, work_space
-from airhockey.envs.kernel.memory import pack, view
+from airhockey.envs.kernel.memory import bytes_from, pack, view
 from airhockey.envs.kernel.observation import Readings, read, readings_of, readings_size
 from airhockey.envs.kernel.opponent import Opponent, reset_opponent
 from airhockey.envs.kernel.plant import Geometry, Plant, addresses_of
@@ -196,8 +196,7 @@ class Simulation(Copyable):
         arrays = {"ctrl": data.ctrl, "qpos": data.qpos, "qvel": data.qvel, "xpos": data.xpos}
         known = addresses | view(self._memory, Geometry)._asdict() | arrays
         self._plant = Plant(**{name: known[name] for name in Plant._fields})
-        first = self._memory.dtype.fields[Controller._fields[0]][1]
-        self._remembered = self._memory.view(np.uint8)[first:]  # what comes before is the same at all times
+        self._remembered = bytes_from(self._memory, Controller)  # what comes before is the same at all times
 
     def _geometry(self, data: Any) -> Geometry:
         model, robot = self.model, self.robot

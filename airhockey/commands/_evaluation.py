@@ -21,8 +21,7 @@ from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options, RunResult, TaskResult, begin, evaluate, resume
 from airhockey.evaluator.engines.cluster import engine_of
 from airhockey.evaluator.official import write_official
-from airhockey.evaluator.results import task_results
-from airhockey.evaluator.runs.folder import RunFolder
+from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 from airhockey.evaluator.runs.records import Order
 
 AGENT_FAILED = 3
@@ -60,10 +59,10 @@ def run(given: Mapping[str, Any], typed: set[str]) -> int:
             click.echo(f"hockey: stored in {folder.path}", err=True)
     else:
         print_result(played, folder)
-    return AGENT_FAILED if any(task.agent_errors for task in task_results(played)) else 0
+    return AGENT_FAILED if any(task.agent_errors for task in played.tasks) else 0
 
 
-def _open_run(given: Mapping[str, Any], typed: set[str]) -> RunFolder:
+def _open_run(given: Mapping[str, Any], typed: set[str]) -> EpisodeFolder:
     """The run to take up, or a new one."""
     options = _options(given)
     if given["resume"]:
@@ -134,7 +133,7 @@ def cpus() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _say_how_to_resume(folder: RunFolder) -> None:
+def _say_how_to_resume(folder: EpisodeFolder) -> None:
     options = folder.manifest.options
     total = options.episodes * len(options.environments)
     click.echo(

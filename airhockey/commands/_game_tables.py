@@ -7,8 +7,9 @@ from rich.console import Console
 from rich.table import Table
 
 from airhockey.evaluator.judging.standings import Standings
-from airhockey.evaluator.match import GameResult, MatchManifest, MatchResult
+from airhockey.evaluator.match import GameResult, MatchOptions, MatchResult
 from airhockey.evaluator.runs.game_records import Event
+from airhockey.evaluator.runs.manifest import Manifest
 
 _WIDTH = 130
 _FEW = 8  # events of a game that are shown when several games were played
@@ -20,7 +21,7 @@ def output() -> Console:
     return console if console.is_terminal else Console(highlight=False, width=_WIDTH)
 
 
-def print_match(result: MatchResult, manifest: MatchManifest, path: Path) -> None:
+def print_match(result: MatchResult, manifest: Manifest[MatchOptions], path: Path) -> None:
     """Print a table per game, its events, and the match as a whole."""
     console = output()
     for number, game in enumerate(result.games, start=1):

@@ -17,14 +17,13 @@ from airhockey.commands._live import games_live
 from airhockey.envs.disturbances import available
 from airhockey.evaluator.engines.cluster import engine_of
 from airhockey.evaluator.match import (
-    MatchManifest,
+    MatchFolder,
     MatchOptions,
     MatchResult,
     begin_match,
     play_match,
     resume_match,
 )
-from airhockey.evaluator.runs.game_folder import GameFolder
 from airhockey.evaluator.runs.game_records import GameOptions
 
 GAME_OPTIONS = ("steps", "disturbances", "clock", "variant", "isolate", "patience")
@@ -95,7 +94,7 @@ def repeated(options: msgspec.Struct, game: GameOptions, names: Iterable[str], t
     return {name: getattr(game if name in GAME_OPTIONS else options, name) for name in names if name in typed}
 
 
-def _open(given: Mapping[str, Any], typed: set[str]) -> GameFolder[MatchManifest]:
+def _open(given: Mapping[str, Any], typed: set[str]) -> MatchFolder:
     """The match to take up, or a new one."""
     sides = {side for side in ("home", "away") if given[side] is not None}
     options = MatchOptions(

@@ -10,8 +10,10 @@ import rich_click as click
 from airhockey.commands._evaluation import cpus
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.engines.engine import engine_for
-from airhockey.learning.pgpe.folder import read_iterations, read_training
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.learning.pgpe.folder import TrainingFolder
 from airhockey.learning.pgpe.plots import draw_sweep, plot_run, save
+from airhockey.learning.pgpe.records import Iteration
 from airhockey.learning.pgpe.sweep import sweep
 from airhockey.learning.pgpe.trainable import resolve
 from airhockey.learning.sac.plots import LOG, plot_training
@@ -24,17 +26,17 @@ def run(folder: str, given: Mapping[str, Any]) -> None:
     if (path / LOG).exists():
         _draw_skill(path, out, given)
         return
-    manifest = read_training(path)
-    names = [resolve(one, manifest.settings.names) for one in given["sweep"]]
+    manifest = TrainingFolder.read(path)
+    names = [resolve(one, manifest.options.names) for one in given["sweep"]]
     try:
         for picture in plot_run(path, out, given["form"]):
             click.echo(picture)
-        mean = read_iterations(path)[-1].mean
+        mean = read_journal(path, Iteration).records[-1].mean
         for name in names:
             click.echo(f"hockey: playing {given['points']} values of {name}", err=True)
             jobs = engine_for(given["jobs"] or cpus())
             points = sweep(manifest, mean, name, given["points"], given["episodes"], jobs)
-            trained = mean[manifest.settings.names.index(name)]
+            trained = mean[manifest.options.names.index(name)]
             draw = partial(draw_sweep, name=name, start=trained, points=points)
             click.echo(save(draw, out / f"sweep-{name}.{given['form']}"))
     except OSError as error:

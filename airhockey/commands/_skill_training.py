@@ -11,8 +11,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from airhockey.commands._evaluation import INTERRUPTED, RUNS, from_anywhere
-from airhockey.envs.disturbances import available, load_disturbances
-from airhockey.errors import ConfigurationError, MissingDependencyError
+from airhockey.envs.disturbances import available
+from airhockey.errors import MissingDependencyError
 from airhockey.learning.sac.folder import CARD, NETWORK, SkillFolder
 from airhockey.learning.sac.records import Line, Settings
 
@@ -34,9 +34,9 @@ def run(given: Mapping[str, Any], typed: set[str]) -> int:
     try:
         with contextlib.suppress(KeyboardInterrupt):
             trainer = Trainer(folder)
-            with _progress(folder.manifest.settings, trainer.progress.steps, given["quiet"]) as on_line:
+            with _progress(folder.manifest.options, trainer.progress.steps, given["quiet"]) as on_line:
                 trainer.run(on_line)
-            figures = evaluate_skill(trainer.settings, trainer.network, given["episodes"])
+            figures = evaluate_skill(trainer.settings, folder.manifest.profile, trainer.network, given["episodes"])
             folder.write_card({"actions": trainer.progress.steps, "control_steps": trainer.env.steps, **figures})
     except DivergedError as error:
         click.echo(f"hockey: the training diverged: {error}; the last checkpoint is the last good one", err=True)
@@ -64,16 +64,9 @@ def _open_run(given: Mapping[str, Any], typed: set[str]) -> SkillFolder:
     values = {name: given[name] for name in fields}
     values["disturbances"] = from_anywhere(given["disturbances"], available())
     if not given["resume"]:
-        load_disturbances(values["disturbances"])  # or say what is wrong with it before anything is written
         settings = Settings(**values)
-        return SkillFolder.create(Path(given["out"]) if given["out"] else _new_folder(settings), settings)
-    folder = SkillFolder.open(Path(given["out"]))
-    for name in sorted(fields & typed):
-        began_with = getattr(folder.manifest.settings, name)
-        if values[name] != began_with:
-            folder.close()
-            raise ConfigurationError(f"the run in {given['out']!r} has {name} {began_with!r}, not {values[name]!r}")
-    return folder
+        return SkillFolder.begin(settings, Path(given["out"]) if given["out"] else _new_folder(settings))
+    return SkillFolder.resume(Path(given["out"]), {name: values[name] for name in sorted(fields & typed)})
 
 
 def _new_folder(settings: Settings) -> Path:

@@ -6,17 +6,17 @@ from rich.table import Table
 
 from airhockey.envs.editions import Deployability, edition
 from airhockey.evaluator import RunResult, TaskResult
+from airhockey.evaluator.evaluation import failure_reasons
 from airhockey.evaluator.judging.tasks import wilson_interval
-from airhockey.evaluator.results import failure_reasons, task_results
-from airhockey.evaluator.runs.folder import RunFolder
+from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 
 OFFICIAL_EPISODES = 1000  # what the limits of the deployability classes are made for
 
 
-def print_result(result: TaskResult | RunResult, folder: RunFolder) -> None:
+def print_result(result: TaskResult | RunResult, folder: EpisodeFolder) -> None:
     """Print the table, what went wrong, and where everything is stored."""
     console = Console(highlight=False)
-    tasks = task_results(result)
+    tasks = result.tasks
     console.print(_table(tasks, folder))
     if isinstance(result, RunResult):
         score = "" if result.score is None else f", {result.phase} score {result.score:.3f}"
@@ -28,7 +28,7 @@ def print_result(result: TaskResult | RunResult, folder: RunFolder) -> None:
     console.print(f"stored in {folder.path}", soft_wrap=True, markup=False)
 
 
-def _table(tasks: tuple[TaskResult, ...], folder: RunFolder) -> Table:
+def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
     options = folder.manifest.options
     rules = edition(options.edition).deployability
     title = f"agent {options.agent}, {options.episodes} episodes, disturbances {options.disturbances}"

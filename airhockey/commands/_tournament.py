@@ -21,11 +21,10 @@ from airhockey.evaluator.engines.cluster import engine_of
 from airhockey.evaluator.engines.engine import Engine
 from airhockey.evaluator.isolation.modes import REMOTE
 from airhockey.evaluator.judging.standings import Standings, as_csv
-from airhockey.evaluator.runs.game_folder import GameFolder
 from airhockey.evaluator.runs.game_records import GameRecord
 from airhockey.evaluator.schedule import Entry, TournamentOptions, entry_of, schedule, with_replacements
 from airhockey.evaluator.tournament import (
-    TournamentManifest,
+    TournamentFolder,
     begin_tournament,
     play_tournament,
     read_standings,
@@ -73,7 +72,7 @@ def run(given: Mapping[str, Any], typed: set[str]) -> int:
     return AGENT_FAILED if any(row.forfeits for row in played.rows) else 0
 
 
-def _play(folder: GameFolder[TournamentManifest], engine: Engine, given: Mapping[str, Any]) -> Standings | None:
+def _play(folder: TournamentFolder, engine: Engine, given: Mapping[str, Any]) -> Standings | None:
     """The final standings; None if the user did not want to wait for them."""
     games, before = len(schedule(folder.manifest.options)), len(folder.records)
     quiet = given["quiet"] or given["as_json"] or given["as_csv"]
@@ -102,7 +101,7 @@ def _print(table: Standings, given: Mapping[str, Any]) -> None:
         print_standings(output(), table)
 
 
-def _open(given: Mapping[str, Any], typed: set[str]) -> GameFolder[TournamentManifest]:
+def _open(given: Mapping[str, Any], typed: set[str]) -> TournamentFolder:
     """The tournament to take up, perhaps extended, or a new one."""
     entries, replacements = _entries(given), _replacements(given)
     options = TournamentOptions(

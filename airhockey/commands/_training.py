@@ -29,17 +29,17 @@ _OPTION = {"overrides": "set", "asked": "train"}
 def run(given: Mapping[str, Any], typed: set[str]) -> int:
     """Do what the options say; returns the exit status."""
     folder = _open_run(given, typed)
-    settings, finished = folder.manifest.settings, False
+    settings, finished = folder.manifest.options, False
     status = 0
     with contextlib.suppress(KeyboardInterrupt):
         try:
-            with training_progress(settings, folder.iterations, given["quiet"]) as (on_episode, on_iteration):
+            with training_progress(settings, folder.records, given["quiet"]) as (on_episode, on_iteration):
                 train(folder, engine_for(given["jobs"] or cpus()), on_episode, on_iteration)
         except DivergedError as error:
             click.echo(f"hockey: the training diverged: {error}", err=True)
             status = DIVERGED
         finished = True
-    done = len(folder.iterations)
+    done = len(folder.records)
     if not finished:
         click.echo(
             f"hockey: interrupted after {done} of {settings.iterations} iterations; continue with:\n"
@@ -53,11 +53,11 @@ def run(given: Mapping[str, Any], typed: set[str]) -> int:
 
 def _say(folder: TrainingFolder, good: str) -> None:
     """What the run ended with."""
-    if not folder.iterations:
+    if not folder.records:
         click.echo("no iteration was finished: there are no parameters", err=True)
         return
-    last = folder.iterations[-1]
-    settings = folder.manifest.settings
+    last = folder.records[-1]
+    settings = folder.manifest.options
     click.echo(
         f"{good}iteration {last.iteration + 1}: return {last.mean_return:.4g}, success {last.mean_success:.1%}, "
         f"penalty {last.mean_penalty:.3g} points per episode"

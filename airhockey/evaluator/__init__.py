@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from airhockey.evaluator.engines.engine import Engine, InProcess, Processes, engine_for
-    from airhockey.evaluator.evaluation import begin, evaluate, play_episode, resume
-    from airhockey.evaluator.results import report
+    from airhockey.evaluator.evaluation import begin, evaluate, play_episode, report, resume
     from airhockey.evaluator.runs.records import EpisodeRecord, Options, RunResult, TaskResult
 
 _HOMES = {
@@ -25,7 +24,7 @@ _HOMES = {
     "engine_for": "engines.engine",
     "evaluate": "evaluation",
     "play_episode": "evaluation",
-    "report": "results",
+    "report": "evaluation",
     "resume": "evaluation",
 }
 

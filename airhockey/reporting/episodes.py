@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.envs.kernel.constraints import MAX_END_EFFECTOR_Y, MIN_END_EFFECTOR_X
+from airhockey.envs.compiled import MAX_END_EFFECTOR_Y, MIN_END_EFFECTOR_X
 from airhockey.envs.specs import IIWA
 from airhockey.evaluator.analysis.contacts import contacts, last_of_each
 

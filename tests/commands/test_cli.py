@@ -174,7 +174,7 @@ def test_a_users_disturbance_file_may_change_while_the_run_waits(hockey: Hockey,
     assert hockey("evaluate --resume --out run --json")[0] == 0
     status, _, err = hockey(f"{run} --resume")
     assert status == 2
-    assert "disturbances" in err
+    assert "disturbances" in err and "content was another" in err and ", not " not in err
 
 
 def test_ctrl_c_leaves_a_run_to_resume(submission: Callable[..., str], tmp_path: Path) -> None:

@@ -12,8 +12,9 @@ from results import ENV, Results
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
+from airhockey.evaluator.runs.manifest import Manifest
 from airhockey.evaluator.runs.reader import Run
-from airhockey.evaluator.runs.records import EpisodeRecord, Manifest, Options
+from airhockey.evaluator.runs.records import EpisodeRecord, Options
 from airhockey.reporting import write_site
 from airhockey.reporting.entries import boards
 from airhockey.reporting.results import Task

@@ -12,11 +12,11 @@ import pytest
 from results import ENV, EPISODES, Results
 
 from airhockey.evaluator.analysis.shots import read_game
+from airhockey.evaluator.evaluation import report as evaluators_report
 from airhockey.evaluator.judging.tasks import wilson_interval
-from airhockey.evaluator.results import report as evaluators_report
-from airhockey.evaluator.runs.folder import read_journal
 from airhockey.evaluator.runs.game_records import Event, GameJob, GameRecord, PlayerResult
 from airhockey.evaluator.runs.game_trajectories import write_film
+from airhockey.evaluator.runs.journal import read_journal
 from airhockey.evaluator.runs.reader import Run, open_source
 from airhockey.evaluator.runs.records import Episode, EpisodeRecord, StepTime
 from airhockey.evaluator.runs.trajectories import read_episodes, write
@@ -108,7 +108,10 @@ def test_the_summary_says_what_the_evaluator_says(results: Results) -> None:
 
 def test_runs_with_the_same_seeds_are_compared_in_pairs(results: Results) -> None:
     comparison = compare(task_of(results.holds), task_of(results.swings))
-    one, other = ({r.index: r.success for r in read_journal(folder)} for folder in (results.holds, results.swings))
+    one, other = (
+        {r.index: r.success for r in read_journal(folder, EpisodeRecord).records}
+        for folder in (results.holds, results.swings)
+    )
     pairs = [(one[k], other[k]) for k in one]
     expected = tuple(pairs.count(both) for both in ((True, True), (True, False), (False, True), (False, False)))
     assert comparison.pairs == expected

@@ -10,7 +10,8 @@ from command_line import Hockey
 from PIL import Image
 
 from airhockey.errors import MissingDependencyError
-from airhockey.evaluator.runs.folder import read_journal
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.evaluator.runs.records import EpisodeRecord
 from airhockey.viewing import offscreen
 from airhockey.viewing.video_writer import open_film
 
@@ -26,7 +27,7 @@ def frames(path: Path) -> list[np.ndarray]:
 def test_a_film_of_episodes_is_as_long_as_they_were_and_moves(hockey: Hockey, run_folder: Path) -> None:
     status, out, err = hockey(f"video {run_folder} -o f.mp4 --episodes 2,0 {SMALL}")
     assert status == 0, err
-    steps = {record.index: record.steps for record in read_journal(run_folder)}
+    steps = {record.index: record.steps for record in read_journal(run_folder, EpisodeRecord).records}
     seen = frames(Path("f.mp4"))
     assert len(seen) == round(steps[2] * STEP * 25) + round(steps[0] * STEP * 25)
     assert seen[0].shape == (96, 160, 3)
@@ -57,7 +58,7 @@ def test_a_gif_keeps_time(hockey: Hockey, match_folder: Path) -> None:
 
 
 def test_highlights_of_episodes_are_what_led_to_a_success(hockey: Hockey, run_folder: Path) -> None:
-    assert [record.success for record in read_journal(run_folder)] == [False, False, True]
+    assert [record.success for record in read_journal(run_folder, EpisodeRecord).records] == [False, False, True]
     assert hockey(f"video {run_folder} -o f.mp4 --highlights {SMALL}")[0] == 0
     assert len(frames(Path("f.mp4"))) == 2 * 25, "the two seconds before the puck was stopped"
     assert hockey(f"video {run_folder} -o g.mp4 --highlights --episodes 0 {SMALL}")[0] == 2

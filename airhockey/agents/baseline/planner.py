@@ -13,7 +13,7 @@ from airhockey.agents.baseline.shots import Shot, judge
 from airhockey.agents.baseline.skill import Array, Situation
 from airhockey.agents.compiling import compiled
 from airhockey.agents.control.workspace import Workspace
-from airhockey.envs.kernel.memory import pack
+from airhockey.envs.compiled import pack
 
 FLIGHT = 2.0
 """Longest flight after the longest wait for which the opponent is predicted, in [s]."""

@@ -16,7 +16,7 @@ from airhockey.agents.control.kinematics import chain_of, heights_and_jacobian, 
 from airhockey.agents.control.parameters import ControlParameters
 from airhockey.agents.control.speed_limit import largest_speed
 from airhockey.agents.control.workspace import Workspace
-from airhockey.envs.kernel.memory import pack
+from airhockey.envs.compiled import pack
 from airhockey.envs.specs import RobotSpec
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ class StepModel(NamedTuple):
     """What a step is computed from; see `ControlParameters` for what is not said here.
 
     Attributes:
-        offset, rotation, tip: The robot's links; see `airhockey.envs.kernel.chain.SerialChain`.
+        offset, rotation, tip: The robot's links; see `airhockey.envs.compiled.SerialChain`.
         position_limit, velocity_limit: Lower and upper to keep, in [rad] and [rad]/[s]. Shapes (2, n).
         acceleration: Largest change of joint velocity per second, in [rad]/[s²]. Shape (n,).
         weights: Diagonal of W. Shape (n,).

@@ -16,8 +16,7 @@ from typing import Any
 import msgspec
 
 from airhockey.evaluator.runs.disk import disk_errors, replace_file, write_record
-from airhockey.evaluator.runs.game_folder import in_order
-from airhockey.evaluator.runs.game_records import GameJob, GameRecord
+from airhockey.evaluator.runs.game_records import GameJob, GameRecord, in_order
 
 WIN, DRAW = 3, 1
 

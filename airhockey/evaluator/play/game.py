@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs.editions import edition
-from airhockey.envs.kernel import referee
+from airhockey.envs.tasks import verdicts
 from airhockey.errors import ActionError, SimulationError
 from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.judging.games import game_class, winner
@@ -153,18 +153,18 @@ class GamePlay:
         """Turn the referee's verdict into events."""
         x, y, _, speed_x, speed_y, _ = self.env.base_observation[:6]
         where = f"the puck was at ({x:+.3f}, {y:+.3f}) m with ({speed_x:+.2f}, {speed_y:+.2f}) m/s"
-        if verdict in (referee.GOAL_HOME, referee.GOAL_AWAY):
-            scorer = 0 if verdict == referee.GOAL_HOME else 1
+        if verdict in (verdicts.GOAL_HOME, verdicts.GOAL_AWAY):
+            scorer = 0 if verdict == verdicts.GOAL_HOME else 1
             self.goals[scorer] += 1
             self.events.append(Event(step=step, what="goal", who=SIDES[scorer], score=self._score(), why=where))
-        elif verdict in (referee.FAULT_HOME, referee.FAULT_AWAY):
-            self._note_fault(0 if verdict == referee.FAULT_HOME else 1, step, where)
+        elif verdict in (verdicts.FAULT_HOME, verdicts.FAULT_AWAY):
+            self._note_fault(0 if verdict == verdicts.FAULT_HOME else 1, step, where)
         else:
-            what = "stuck" if verdict == referee.STUCK else "out"
+            what = "stuck" if verdict == verdicts.STUCK else "out"
             self.events.append(Event(step=step, what=what, score=self._score(), why=where))
 
     def _note_fault(self, guilty: int, step: int, where: str) -> None:
-        since = float(self.env.simulation.game.timer[0])
+        since = float(self.env.game.timer[0])
         why = f"its side held the puck for {since:.2f} s; {where}"
         self.events.append(Event(step=step, what="fault", who=SIDES[guilty], score=self._score(), why=why))
         faults, per_point = self.env.faults[guilty], self.rules.game.faults_per_point

@@ -10,7 +10,7 @@ from airhockey.agents.parameters import convert
 from airhockey.agents.thesis.parameters import ThesisParameters
 from airhockey.evaluator.play import seeding
 from airhockey.evaluator.play.episode import agent_failures, describe
-from airhockey.learning.pgpe.records import Manifest, Outcome, RolloutJob
+from airhockey.learning.pgpe.records import Outcome, PgpeManifest, RolloutJob, Settings
 from airhockey.learning.pgpe.stage import Stage, environments_of
 from airhockey.learning.pgpe.trainable import bounds, replaced
 
@@ -26,12 +26,12 @@ class Rollouts:
         manifest: The run's.
     """
 
-    manifest: Manifest
+    manifest: PgpeManifest[Settings]
     _stages: dict[str, Stage] = field(default_factory=dict, repr=False)
     _players: dict[str, tuple[tuple[float, ...], AgentBase]] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
-        settings = self.manifest.settings
+        settings = self.manifest.options
         self._environments = environments_of(settings.task, settings.robot)
         self._start = convert(ThesisParameters, self.manifest.parameters, "train.json: parameters")
         self._lower, self._upper = bounds(settings.names)
@@ -49,7 +49,7 @@ class Rollouts:
 
     def _stage(self, name: str) -> Stage:
         if name not in self._stages:
-            settings = self.manifest.settings
+            settings = self.manifest.options
             self._stages[name] = Stage(settings.task, name, settings.discount, self.manifest.profile)
         return self._stages[name]
 
@@ -59,20 +59,20 @@ class Rollouts:
         if known is not None and known[0] == theta:
             return known[1]
         within = np.clip(theta, self._lower, self._upper)
-        values = dict(zip(self.manifest.settings.names, map(float, within), strict=True))
+        values = dict(zip(self.manifest.options.names, map(float, within), strict=True))
         player = stage.player(replaced(self._start, values))
         self._players[stage.name] = theta, player
         return player
 
     def _seed(self, job: RolloutJob) -> np.random.SeedSequence:
-        settings = self.manifest.settings
+        settings = self.manifest.options
         candidate = 0 if settings.common_random_numbers else job.candidate + 1
         return np.random.SeedSequence(settings.seed, spawn_key=(_TRAINING, job.iteration, candidate, job.episode))
 
     def _play(self, stage: Stage, player: AgentBase, seed: np.random.SeedSequence) -> Outcome:
         env, reward = stage.env, stage.reward
-        shaped = self.manifest.settings.reward == "thesis"
-        discount, value, weight = self.manifest.settings.discount, 0.0, 1.0
+        shaped = self.manifest.options.reward == "thesis"
+        discount, value, weight = self.manifest.options.discount, 0.0, 1.0
         player.episode_start()
         observation = stage.begin(seed)
         state = env.base_observation

@@ -11,11 +11,12 @@ from airhockey.agents.base import AgentBase
 from airhockey.agents.table import CONTACT, HOME
 from airhockey.agents.thesis.agent import ThesisAgent
 from airhockey.agents.thesis.parameters import ThesisParameters
+from airhockey.envs.compiled import inverse_kinematics, work_space
 from airhockey.envs.disturbances import Disturbances
 from airhockey.envs.editions import edition
-from airhockey.envs.kernel.kinematics import inverse_kinematics, work_space
-from airhockey.envs.rewards import HitReward, Reward, TaskReward, reward_for
-from airhockey.envs.rewards.situation import situation
+from airhockey.envs.tasks import Reward, TaskReward, reward_for
+from airhockey.envs.tasks.hit import HitReward
+from airhockey.envs.tasks.positions import puck_and_mallet
 from airhockey.errors import ConfigurationError
 
 Array = NDArray[np.float64]
@@ -93,7 +94,7 @@ class Stage:
 
 def at_home(env: Any) -> bool:
     """Whether the mallet is at home."""
-    now = situation(env, env.base_observation)
+    now = puck_and_mallet(env, env.base_observation)
     return bool(np.hypot(*(now.mallet - HOME)) < _AT_HOME)
 
 

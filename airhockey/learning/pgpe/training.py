@@ -1,7 +1,6 @@
 """A training run: ask for parameters, play episodes with them, tell what they were worth, keep everything."""
 
 import contextlib
-import datetime
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -11,20 +10,16 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey import envs
 from airhockey.agents.thesis.parameters import ThesisParameters
-from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator.checks import check_versions
 from airhockey.evaluator.engines.engine import InProcess, JobFailed, Processes, Shift
-from airhockey.learning.pgpe.folder import TrainingFolder, read_training
+from airhockey.learning.pgpe.folder import TrainingFolder
 from airhockey.learning.pgpe.hyperpolicy import Hyperpolicy
 from airhockey.learning.pgpe.penalty_budget import PenaltyBudget
-from airhockey.learning.pgpe.records import Iteration, Manifest, Outcome, RolloutJob, Settings
+from airhockey.learning.pgpe.records import Iteration, Outcome, RolloutJob, Settings
 from airhockey.learning.pgpe.rollouts import Rollouts
 from airhockey.learning.pgpe.schedule import learning_rate
 from airhockey.learning.pgpe.search import DivergedError, Pgpe, Search, check_progress
-from airhockey.learning.pgpe.stage import environments_of
 from airhockey.learning.pgpe.trainable import bounds, plain
 
 Array = NDArray[np.float64]
@@ -42,39 +37,7 @@ def begin(settings: Settings, parameters: ThesisParameters, path: Path) -> Train
     Raises:
         ConfigurationError: A setting has no meaning, or the folder holds something or cannot be written.
     """
-    check(settings)
-    manifest = Manifest(
-        settings=settings,
-        parameters=plain(parameters),
-        profile=load_disturbances(settings.disturbances),
-        versions=envs.versions(),
-        created=datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
-    )
-    return TrainingFolder.create(path, manifest)
-
-
-def check(settings: Settings) -> None:
-    """Find the mistakes in a run's settings; raises `ConfigurationError`."""
-    environments_of(settings.task, settings.robot)
-    if not 0.0 < settings.discount <= 1.0:
-        raise ConfigurationError(f"the discount must be above 0 and at most 1, not {settings.discount:g}")
-    if settings.discount == 1.0 and settings.reward == "thesis" and settings.task in ("hit", "switcher"):
-        raise ConfigurationError("a goal is worth 1 / (1 - discount): the thesis's reward needs a discount below 1")
-    if settings.candidates < 2:
-        raise ConfigurationError(f"--candidates must be at least 2 to compare, not {settings.candidates}")
-    if not settings.learning_rate > 0.0:
-        raise ConfigurationError(f"the learning rate must be positive, not {settings.learning_rate:g}")
-    if settings.max_penalty is not None and not settings.max_penalty >= 0.0:
-        raise ConfigurationError(
-            f"the penalty budget must be 0 or more points per episode, not {settings.max_penalty:g}"
-        )
-    for name in ("multiplier_rate", "sigma_share"):
-        if not getattr(settings, name) >= 0.0:
-            raise ConfigurationError(f"the {name.replace('_', ' ')} must be 0 or more, not {getattr(settings, name):g}")
-    lower, upper = bounds(settings.names)
-    for name, value, low, high in zip(settings.names, settings.mean, lower, upper, strict=True):
-        if not low <= value <= high:
-            raise ConfigurationError(f"{name} starts at {value:g}, but must be from {low:g} to {high:g}")
+    return TrainingFolder.begin(settings, path, parameters=plain(parameters))
 
 
 def resume(path: Path, asked: Mapping[str, Any] | None = None) -> TrainingFolder:
@@ -87,20 +50,20 @@ def resume(path: Path, asked: Mapping[str, Any] | None = None) -> TrainingFolder
     Raises:
         ConfigurationError: There is no run, it is another than the one asked for, or the software is.
     """
-    manifest = read_training(path)
-    for name, value in (asked or {}).items():
-        began_with = getattr(manifest.settings, name)
-        if name == "iterations":
-            settings = msgspec.structs.replace(manifest.settings, iterations=value)
-            if settings.schedule in ("linear", "cosine") and value != began_with:
-                raise ConfigurationError(
-                    f"the run's learning rate ends after {began_with} iterations ({settings.schedule}): it cannot have {value}"
-                )
-            manifest = msgspec.structs.replace(manifest, settings=settings)
-        elif value != began_with:
-            raise ConfigurationError(f"the run in {str(path)!r} has {name} {began_with!r}, not {value!r}")
-    check_versions(manifest.versions, path)
-    return TrainingFolder.open(path, manifest)
+    asked = dict(asked or {})
+    iterations = asked.pop("iterations", None)
+    folder = TrainingFolder.resume(path, asked)
+    settings = folder.manifest.options
+    if iterations is None or iterations == settings.iterations:
+        return folder
+    with folder.released_on_error():
+        if settings.schedule in ("linear", "cosine"):
+            raise ConfigurationError(
+                f"the run's learning rate ends after {settings.iterations} iterations ({settings.schedule}): "
+                f"it cannot have {iterations}"
+            )
+        folder.change(msgspec.structs.replace(settings, iterations=iterations))
+    return folder
 
 
 def train(
@@ -124,18 +87,18 @@ def train(
         AirHockeyError: The disk is full, or workers do not start.
         KeyboardInterrupt: The user's; the finished iterations are kept.
     """
-    settings = folder.manifest.settings
+    settings = folder.manifest.options
     with folder, (engine or InProcess()).shift(Rollouts(folder.manifest)) as shift:
         stand = _Stand(shift, settings, on_episode)
         search, budget = search_of(settings), PenaltyBudget(settings.max_penalty, settings.multiplier_rate)
-        for done in folder.iterations:
+        for done in folder.records:
             theta = search.ask(_random(settings, done.iteration), settings.candidates)
             if not np.array_equal(theta, np.array(done.theta)):
                 raise AirHockeyError(
                     f"iteration {done.iteration} of the journal is not what this search would have tried"
                 )
             _learn(search, budget, done.iteration, settings, theta, np.array(done.returns), np.array(done.penalties))
-        for number in range(len(folder.iterations), settings.iterations):
+        for number in range(len(folder.records), settings.iterations):
             iteration = _iterate(search, budget, number, settings, stand.play)
             folder.add(iteration)
             if on_iteration is not None:

@@ -18,6 +18,7 @@ from stable_baselines3.common.logger import Logger
 from airhockey.agents.atacom.features import ACTION_MIRROR
 from airhockey.agents.atacom.network import Network
 from airhockey.agents.atacom.skill import SKILLS
+from airhockey.envs.disturbances import Disturbances
 from airhockey.errors import AirHockeyError
 from airhockey.learning.sac.algorithms import OAC, MirroredReplay
 from airhockey.learning.sac.folder import SkillFolder
@@ -47,9 +48,9 @@ class Progress:
     owed: float = 0.0
 
 
-def make_env(settings: Settings) -> SkillEnv:
-    """The environment of a run."""
-    return TASKS[settings.task](settings.robot, settings.disturbances)
+def make_env(settings: Settings, profile: Disturbances) -> SkillEnv:
+    """The environment of a run, with the disturbances that it began with."""
+    return TASKS[settings.task](settings.robot, profile)
 
 
 def make_model(settings: Settings, env: SkillEnv) -> SAC:
@@ -91,8 +92,8 @@ class Trainer:
             folder: Of the run.
         """
         torch.set_num_threads(1)
-        self._folder, self.settings, self.progress = folder, folder.manifest.settings, Progress()
-        self.env = make_env(self.settings)
+        self._folder, self.settings, self.progress = folder, folder.manifest.options, Progress()
+        self.env = make_env(self.settings, folder.manifest.profile)
         self.model = make_model(self.settings, self.env)
         self._rows: list[tuple[float, float, int, int]] = []
         state = folder.load()

@@ -137,7 +137,7 @@ def test_the_better_scorer_beyond_the_limit(variant: Variant, expected: str) -> 
     game = played(10, 60, 100)
     game.options = type(game.options)(steps=100, variant=variant)
     game.begin()
-    game.env.simulation.game.score[0] = 5
+    game.env.game.score[0] = 5
     game.goals[0] = 5
     observation = game.env.true_observation
     for step in range(1, 101):

@@ -24,7 +24,7 @@ def next_server(game: GamePlay) -> str:
 
 def serve(game: GamePlay, side: str) -> None:
     """Let the next serve be this side's, as the referee remembers it."""
-    game.env.simulation.game.side[1] = 1 if side == "home" else -1
+    game.env.game.serve[0] = 1 if side == "home" else -1
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ def hurry(game: GamePlay, x: float, first: int) -> int:
     """A fault of the side that holds a puck at x, its 15 s already gone; gives the step after."""
     observation = placed(game, x, 0.2, 0.0, 0.0, 0.0, 0.0)
     assert run(game, observation, 1, first) == first  # the serve forgot the side; now it is known
-    game.env.simulation.game.timer[0] = 15.0
+    game.env.game.timer[0] = 15.0
     return run(game, observation, 1, first + 1) + 1
 
 
@@ -101,10 +101,10 @@ def test_faults_of_both_are_counted_apart(game: GamePlay) -> None:
 def test_the_timer_restarts_when_the_puck_changes_sides(game: GamePlay) -> None:
     observation = placed(game, -0.02, 0.3, 0.0, 1.0, 0.0, 0.0)
     game.step(observation, 1)
-    game.env.simulation.game.timer[0] = 14.99
+    game.env.game.timer[0] = 14.99
     assert run(game, observation, 20, 2) == 21
     assert told(game)[1:] == []
-    assert game.env.simulation.game.timer[0] < 0.5
+    assert game.env.game.timer[0] < 0.5
 
 
 @pytest.mark.parametrize("server", ["home", "away"])
@@ -119,7 +119,7 @@ def test_a_puck_stuck_in_the_middle_is_served_again_by_the_same_side(game: GameP
 def test_a_slow_puck_in_the_middle_is_no_fault_however_long_it_takes(game: GamePlay) -> None:
     observation = placed(game, -0.1, 0.2, 0.0, 0.1, 0.0, 0.0)
     game.step(observation, 1)
-    game.env.simulation.game.timer[0] = 20.0
+    game.env.game.timer[0] = 20.0
     assert run(game, observation, 10, 2) == 11
     assert told(game)[1:] == []
 

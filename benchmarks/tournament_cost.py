@@ -1,6 +1,6 @@
 """What a tournament costs here, and elsewhere: a game, the scheduler, the bookkeeping; the numbers of docs/scaling.md.
 
-python benchmarks/tournament_cost.py game [--home baseline] [--away thesis] [--steps 5000]
+python benchmarks/tournament_cost.py game [--home planner] [--away thesis] [--steps 5000]
 python benchmarks/tournament_cost.py engines [--games 60] [--steps 100] [--workers 2]
 python benchmarks/tournament_cost.py bookkeeping [--entries 16]
 """
@@ -18,11 +18,13 @@ import numpy as np
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator.engines.cluster import Cluster
-from airhockey.evaluator.engines.engine import Engine, InProcess, Processes
+from airhockey.evaluator.engines.engine import Engine, InProcess
+from airhockey.evaluator.engines.processes import Processes
+from airhockey.evaluator.entries import Entry
 from airhockey.evaluator.judging.standings import write_standings
-from airhockey.evaluator.play.game_player import Game, GamePlayer
+from airhockey.evaluator.play.game import Game, GamePlayer
 from airhockey.evaluator.runs.game_records import GameJob, GameOptions, GameRecord
-from airhockey.evaluator.schedule import Entry, TournamentOptions, schedule
+from airhockey.evaluator.schedule import TournamentOptions, schedule
 from airhockey.evaluator.tournament import TournamentFolder, begin_tournament
 
 WHOLE = 45000
@@ -142,7 +144,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     what = parser.add_subparsers(required=True)
     one = what.add_parser("game")
-    one.add_argument("--home", default="baseline")
+    one.add_argument("--home", default="planner")
     one.add_argument("--away", default="thesis")
     one.add_argument("--steps", type=int, default=5000)
     one.set_defaults(measure=game)

@@ -61,10 +61,10 @@ AGENTS: dict[str, AgentEntry] = {
             "airhockey.agents.thesis.final:FinalThesisAgent",
         ),
         AgentEntry(
-            "baseline",
+            "planner",
             "planning: predicts the puck and chooses among smash, defend, repel, prepare and ready",
             EVERY_ENVIRONMENT,
-            "airhockey.agents.baseline.agent:BaselineAgent",
+            "airhockey.agents.planner.agent:PlannerAgent",
         ),
     )
 }

@@ -8,7 +8,8 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from airhockey.evaluator.engines.engine import Engine, InProcess, Processes, engine_for
+    from airhockey.evaluator.engines.engine import Engine, InProcess, engine_for
+    from airhockey.evaluator.engines.processes import Processes
     from airhockey.evaluator.evaluation import begin, evaluate, play_episode, report, resume
     from airhockey.evaluator.runs.records import EpisodeRecord, Options, RunResult, TaskResult
 
@@ -17,7 +18,7 @@ _HOMES = {
     "EpisodeRecord": "runs.records",
     "InProcess": "engines.engine",
     "Options": "runs.records",
-    "Processes": "engines.engine",
+    "Processes": "engines.processes",
     "RunResult": "runs.records",
     "TaskResult": "runs.records",
     "begin": "evaluation",

@@ -8,8 +8,8 @@ from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.envs.editions import Edition, edition
 from airhockey.errors import ConfigurationError, unknown
+from airhockey.evaluator.isolation.handle import CLOCKS
 from airhockey.evaluator.isolation.modes import REMOTE, choose, host_and_port
-from airhockey.evaluator.play.episode import CLOCKS
 from airhockey.evaluator.runs.game_records import VARIANTS, GameOptions
 from airhockey.evaluator.runs.records import Options
 

@@ -13,21 +13,20 @@ from airhockey.envs.editions import edition
 from airhockey.evaluator.checks import check_options
 from airhockey.evaluator.engines.engine import Engine, InProcess, JobFailed
 from airhockey.evaluator.judging import tasks as judging
-from airhockey.evaluator.play.episode_player import Player, failed
+from airhockey.evaluator.play.episode import EpisodePlayer, failed
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 from airhockey.evaluator.runs.journal import read_journal
 from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, Options, RunResult, RunTime, TaskResult
 from airhockey.evaluator.runs.trajectories import TRAJECTORIES, read_steps
 
 OnEpisode = Callable[[EpisodeRecord], None]
+Result = TaskResult | RunResult
 
 begin = EpisodeFolder.begin
 resume = EpisodeFolder.resume
 
 
-def evaluate(
-    folder: EpisodeFolder, engine: Engine | None = None, on_episode: OnEpisode | None = None
-) -> TaskResult | RunResult:
+def evaluate(folder: EpisodeFolder, engine: Engine | None = None, on_episode: OnEpisode | None = None) -> Result:
     """Play the episodes of a run that are not played yet, and report on all of them.
 
     Args:
@@ -42,7 +41,7 @@ def evaluate(
     manifest = folder.manifest
     with folder:
         missing = [job for job in jobs(manifest.options) if job not in folder.done]
-        results = (engine or InProcess()).run(Player(manifest.options, manifest.profile), missing)
+        results = (engine or InProcess()).run(EpisodePlayer(manifest.options, manifest.profile), missing)
         with contextlib.closing(results):
             for job, result in results:
                 episode = failed(job, result.reason) if isinstance(result, JobFailed) else result
@@ -62,7 +61,7 @@ def play_episode(options: Options, env: str, index: int) -> Episode:
         ConfigurationError: An option has no meaning.
     """
     check_options(options)
-    player = Player(options, load_disturbances(options.disturbances))
+    player = EpisodePlayer(options, load_disturbances(options.disturbances))
     try:
         return player(Job(env, index))
     finally:
@@ -74,7 +73,7 @@ def jobs(options: Options) -> list[Job]:
     return [Job(env, index) for env in options.environments for index in range(options.episodes)]
 
 
-def report(path: Path) -> TaskResult | RunResult:
+def report(path: Path) -> Result:
     """The result of a finished run, from what it stored: of its task, or of its tasks and the whole.
 
     Args:
@@ -99,20 +98,20 @@ def failure_reasons(path: Path, most: int = 3) -> list[tuple[str, int]]:
 
 
 def _task_result(path: Path, options: Options, env: str, records: list[EpisodeRecord]) -> TaskResult:
-    rules = edition(options.edition)
-    points = sum(judging.penalty(record, rules) for record in records)
+    verdict = judging.judge(records, edition(options.edition))
     return TaskResult(
         env=env,
         agent=options.agent,
-        episodes=len(records),
+        episodes=verdict.episodes,
         seed=options.seed,
         disturbances=options.disturbances,
-        success=sum(record.success for record in records) / len(records),
-        penalty=points,
-        deployability=rules.deployability.class_of(points),
-        violations=judging.violated_episodes(records),
+        success=verdict.success,
+        penalty=verdict.penalty,
+        deployability=verdict.deployability,
+        violations=verdict.violations,
+        late=verdict.late,
         computation_time=_run_time(read_steps(path / TRAJECTORIES, env, "computation_time")),
-        agent_errors=sum(record.error is not None for record in records),
+        agent_errors=verdict.failures,
     )
 
 

@@ -6,13 +6,14 @@ from typing import Any
 
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.engines.engine import Engine
+from airhockey.evaluator.entries import Entry
 from airhockey.evaluator.judging.standings import Standings, standings, write_standings
 from airhockey.evaluator.match import play_games
 from airhockey.evaluator.runs.game_folder import GameFolder
 from airhockey.evaluator.runs.game_records import GameRecord
 from airhockey.evaluator.runs.journal import read_journal
 from airhockey.evaluator.runs.manifest import TOURNAMENT, Manifest
-from airhockey.evaluator.schedule import Entry, TournamentOptions, check_tournament, extended, schedule
+from airhockey.evaluator.schedule import TournamentOptions, check_tournament, extended, schedule
 
 OnStandings = Callable[[GameRecord, Standings], None]
 

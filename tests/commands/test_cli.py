@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -140,6 +141,17 @@ def test_a_failing_agent_is_status_3_with_its_reasons(hockey: Hockey, submission
     assert status == 3
     assert "agent failed" in out
     assert "stage [fright]" in out
+
+
+def test_the_table_says_which_episodes_took_too_long_and_by_which_clock(
+    hockey: Hockey, submission: Callable[..., str]
+) -> None:
+    agent = submission("if self.episodes == 1 and self.steps == 1: time.sleep(0.15)")
+    run = f"evaluate --env 3dof-defend --agent {agent} --isolate none --episodes 3 --jobs 1 --quiet"
+    for clock, late in (("wall", "1"), ("cpu", "0")):
+        _, out, _ = hockey(f"{run} --clock {clock}")
+        assert re.search(rf"episodes violating computation_time +{late} ", out)
+        assert all(re.search(rf"draw_action {name}, {clock} clock +[\d.]+ ms", out) for name in ("mean", "p99", "max"))
 
 
 @pytest.mark.parametrize("jobs", ["1", "2"])

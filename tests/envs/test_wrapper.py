@@ -7,8 +7,14 @@ import mujoco
 import numpy as np
 import pytest
 from arms import ALL, standing, swinging
+from tools import needs_opencv
 
 from airhockey import envs
+
+
+@pytest.fixture(autouse=True)
+def opencv() -> None:
+    needs_opencv()
 
 
 @pytest.fixture(autouse=True)

@@ -15,7 +15,7 @@ from outcomes import ENV, outcome, without_time
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options, Processes, begin, evaluate, play_episode, resume
-from airhockey.evaluator.play.episode_player import Player
+from airhockey.evaluator.play.episode import EpisodePlayer
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 from airhockey.evaluator.runs.journal import read_journal
 from airhockey.evaluator.runs.records import EpisodeRecord, Job
@@ -99,7 +99,7 @@ def test_killed_and_resumed(options: Options, tmp_path: Path) -> None:
 
 def test_another_run_is_not_taken_up(options: Options, one_job: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     resume(one_job, {"seed": 3, "disturbances": "server"}).__exit__()
-    for name, value in {"seed": 4, "episodes": 7, "clock": "cpu", "disturbances": "harsh", "agent": "hold"}.items():
+    for name, value in {"seed": 4, "episodes": 7, "clock": "wall", "disturbances": "harsh", "agent": "hold"}.items():
         with pytest.raises(ConfigurationError, match=f"has {name}"):
             resume(one_job, {name: value})
     monkeypatch.setattr("airhockey.envs.versions", lambda: {"mujoco": "5.0.0"})
@@ -215,7 +215,7 @@ def test_a_workers_memory_has_a_bound(tmp_path: Path) -> None:
 
 def test_memory_does_not_grow_with_the_episodes() -> None:
     options = Options(environments=(ENV,), agent="hold", disturbances="server")
-    player = Player(options, load_disturbances("server"))
+    player = EpisodePlayer(options, load_disturbances("server"))
     for index in range(20):
         player(Job(ENV, index))
     before = memory("self", "VmRSS")

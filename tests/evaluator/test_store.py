@@ -5,7 +5,7 @@ import pytest
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator.play.episode_player import failed
+from airhockey.evaluator.play.episode import failed
 from airhockey.evaluator.runs import episode_folder as store
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 from airhockey.evaluator.runs.journal import read_journal

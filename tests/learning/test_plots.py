@@ -18,7 +18,7 @@ NAMES = ("hit.theta.0", "hit.theta.2")
 class Slope:
     """An engine for which less of everything is better."""
 
-    def shift(self, function):
+    def pool(self, function):
         return self
 
     def __enter__(self):

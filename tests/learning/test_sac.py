@@ -12,11 +12,12 @@ from gymnasium.utils.env_checker import check_env
 from airhockey.agents.atacom.network import Network
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
+from airhockey.learning.diverged import DivergedError
 from airhockey.learning.sac.algorithms import OAC, MirroredReplay
 from airhockey.learning.sac.folder import SkillFolder
 from airhockey.learning.sac.records import Line, Settings
 from airhockey.learning.sac.skill_tasks import DefendEnv, HomeEnv
-from airhockey.learning.sac.trainer import DivergedError, Trainer, make_env, make_model
+from airhockey.learning.sac.trainer import Trainer, make_env, make_model
 
 IDEAL = load_disturbances("ideal")
 SHORT = Settings(

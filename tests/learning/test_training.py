@@ -14,12 +14,13 @@ import pytest
 
 from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator.engines.engine import InProcess, Processes
+from airhockey.evaluator.engines.engine import InProcess
+from airhockey.evaluator.engines.processes import Processes
 from airhockey.evaluator.runs.journal import read_journal
+from airhockey.learning.diverged import DivergedError
 from airhockey.learning.pgpe import training
 from airhockey.learning.pgpe.records import Iteration, Outcome, RolloutJob, Settings
 from airhockey.learning.pgpe.rollouts import Rollouts
-from airhockey.learning.pgpe.search import DivergedError
 from airhockey.learning.pgpe.trainable import ranges, read, replaced
 
 TUNED = thesis_parameters("tuned")
@@ -41,7 +42,7 @@ class Bowl(AbstractContextManager):
     def __init__(self, breaks_at=10**6, outcome=None):
         self.breaks_at, self.outcome, self.jobs = breaks_at, outcome, []
 
-    def shift(self, function):
+    def pool(self, function):
         return self
 
     def __exit__(self, *_):

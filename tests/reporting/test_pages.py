@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from results import ENV, EPISODES, Results
 
-from airhockey.evaluator.analysis.shots import read_game
+from airhockey.evaluator.analysis.game import analyse_game
 from airhockey.evaluator.evaluation import report as evaluators_report
 from airhockey.evaluator.judging.tasks import wilson_interval
 from airhockey.evaluator.runs.game_records import Event, GameJob, GameRecord, PlayerResult
@@ -97,11 +97,11 @@ def test_a_name_or_an_error_of_others_stays_text(results: Results) -> None:
 def test_the_summary_says_what_the_evaluator_says(results: Results) -> None:
     expected: Any = evaluators_report(results.swings)
     task = task_of(results.swings)
-    assert (task.success, task.penalty) == (expected.success, expected.penalty)
+    assert (task.verdict.success, task.verdict.penalty) == (expected.success, expected.penalty)
     assert task.violations.items() >= expected.violations.items()
-    assert task.failures == expected.agent_errors == EPISODES // 4
+    assert task.verdict.failures == expected.agent_errors == EPISODES // 4
     said = words_of(report([results.swings])[0])
-    low, high = wilson_interval(task.successes, EPISODES)
+    low, high = wilson_interval(task.verdict.successes, EPISODES)
     for text in (f"{expected.success:.1%}", f"{low:.1%} – {high:.1%}", f"{expected.penalty:g}", "numba", "seed 3"):
         assert text in said
 
@@ -220,7 +220,7 @@ def test_goals_of_the_film_are_those_of_the_referee(tmp_path: Path) -> None:
         events=(*events, goal),
     )
     write_film(tmp_path / "film.h5", rows[:over], b"{}")
-    data = read_game(tmp_path / "film.h5", record)
+    data = analyse_game(tmp_path / "film.h5", record)
     assert [(shot.side, shot.outcome) for shot in data.shots] == [("home", "goal")]
     assert data.shots[0].speed == pytest.approx(3.0)
     assert data.touches == (1, 0)

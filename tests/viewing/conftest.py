@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 from games import play_one
+from tools import needs_rendering
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator import Options, begin, evaluate
@@ -38,3 +39,9 @@ def match_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with MatchFolder.create(path, manifest) as folder:
         folder.add(play_one("hold", "hold", GAME_STEPS))
     return path
+
+
+@pytest.fixture
+def rendering() -> None:
+    """Skips where nothing can be rendered."""
+    needs_rendering()

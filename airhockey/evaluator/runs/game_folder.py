@@ -13,7 +13,7 @@ A game is finished when its line stands in the journal; its film is written befo
 import shutil
 from pathlib import Path
 
-from airhockey.evaluator.play.game_player import Game
+from airhockey.evaluator.play.game import Game
 from airhockey.evaluator.runs.disk import JSON, disk_errors
 from airhockey.evaluator.runs.folder import Options, RunFolder
 from airhockey.evaluator.runs.game_records import GameRecord, file_name

@@ -71,6 +71,11 @@ def read_manifest(
     return manifest
 
 
+def has_option(options: Any, name: str) -> bool:
+    """Whether there is such an option."""
+    return hasattr(options, name) or hasattr(getattr(options, "game", None), name)
+
+
 def option_of(options: Any, name: str) -> Any:
     """An option by its name; those of a game are in the field `game`."""
     return getattr(options, name) if hasattr(options, name) else getattr(options.game, name)

@@ -31,12 +31,12 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     """
 
     environments: tuple[str, ...]
-    agent: str = "thesis"
+    agent: str = "planner"
     episodes: int = 1000
     seed: int = 0
     disturbances: str = "ideal"
     interpolation_order: Order = "agent"
-    clock: Literal["wall", "cpu"] = "wall"
+    clock: Literal["wall", "cpu"] = "cpu"
     edition: str = "2023"
     isolate: Literal["none", "process", "sandbox"] = "none"
     patience: float = 60.0
@@ -113,6 +113,7 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
         success: Share of episodes, 0 … 1.
         penalty: Penalty points, summed over the episodes.
         violations: Constraint name -> number of episodes that violated it.
+        late: Number of episodes that cost points for computation time.
         agent_errors: Number of episodes that the agent failed.
     """
 
@@ -125,6 +126,7 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
     penalty: float
     deployability: str
     violations: dict[str, int]
+    late: int
     computation_time: RunTime
     agent_errors: int
 

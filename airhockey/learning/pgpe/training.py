@@ -3,6 +3,7 @@
 import contextlib
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,14 +13,16 @@ from numpy.typing import NDArray
 
 from airhockey.agents.thesis.parameters import ThesisParameters
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator.engines.engine import InProcess, JobFailed, Processes, Shift
+from airhockey.evaluator.engines.engine import InProcess, JobFailed, Pool
+from airhockey.evaluator.engines.processes import Processes
+from airhockey.learning.diverged import DivergedError
 from airhockey.learning.pgpe.folder import TrainingFolder
 from airhockey.learning.pgpe.hyperpolicy import Hyperpolicy
 from airhockey.learning.pgpe.penalty_budget import PenaltyBudget
 from airhockey.learning.pgpe.records import Iteration, Outcome, RolloutJob, Settings
 from airhockey.learning.pgpe.rollouts import Rollouts
 from airhockey.learning.pgpe.schedule import learning_rate
-from airhockey.learning.pgpe.search import DivergedError, Pgpe, Search, check_progress
+from airhockey.learning.pgpe.search import Pgpe, Search, check_progress
 from airhockey.learning.pgpe.trainable import bounds, plain
 
 Array = NDArray[np.float64]
@@ -88,18 +91,18 @@ def train(
         KeyboardInterrupt: The user's; the finished iterations are kept.
     """
     settings = folder.manifest.options
-    with folder, (engine or InProcess()).shift(Rollouts(folder.manifest)) as shift:
-        stand = _Stand(shift, settings, on_episode)
-        search, budget = search_of(settings), PenaltyBudget(settings.max_penalty, settings.multiplier_rate)
+    with folder, (engine or InProcess()).pool(Rollouts(folder.manifest)) as pool:
+        stand = _Stand(pool, settings, on_episode)
+        learner = _Learner(settings, search_of(settings), PenaltyBudget(settings.max_penalty, settings.multiplier_rate))
         for done in folder.records:
-            theta = search.ask(_random(settings, done.iteration), settings.candidates)
+            theta = learner.ask(done.iteration)
             if not np.array_equal(theta, np.array(done.theta)):
                 raise AirHockeyError(
                     f"iteration {done.iteration} of the journal is not what this search would have tried"
                 )
-            _learn(search, budget, done.iteration, settings, theta, np.array(done.returns), np.array(done.penalties))
+            learner.learn(done.iteration, theta, np.array(done.returns), np.array(done.penalties))
         for number in range(len(folder.records), settings.iterations):
-            iteration = _iterate(search, budget, number, settings, stand.play)
+            iteration = _iterate(learner, number, stand.play)
             folder.add(iteration)
             if on_iteration is not None:
                 on_iteration(iteration)
@@ -108,8 +111,8 @@ def train(
 class _Stand:
     """Where the episodes of a run are played."""
 
-    def __init__(self, shift: Shift[RolloutJob, Outcome], settings: Settings, on_episode: OnEpisode | None) -> None:
-        self._shift, self._episodes, self._on_episode = shift, settings.episodes, on_episode
+    def __init__(self, pool: Pool[RolloutJob, Outcome], settings: Settings, on_episode: OnEpisode | None) -> None:
+        self._pool, self._episodes, self._on_episode = pool, settings.episodes, on_episode
 
     def play(self, number: int, theta: Array) -> list[list[Outcome]]:
         """The outcomes of each candidate's episodes, in order. θ of shape (N, d)."""
@@ -119,7 +122,7 @@ class _Stand:
             for episode in range(self._episodes)
         ]
         outcomes: dict[tuple[int, int], Outcome] = {}
-        with contextlib.closing(self._shift.run(jobs)) as results:
+        with contextlib.closing(self._pool.run(jobs)) as results:
             for job, result in results:
                 outcome = Outcome(error=result.reason) if isinstance(result, JobFailed) else result
                 outcomes[job.candidate, job.episode] = outcome
@@ -148,31 +151,36 @@ def search_of(settings: Settings) -> Search:
     )
 
 
-def _random(settings: Settings, iteration: int) -> np.random.Generator:
-    """The generator of what an iteration tries: it depends on nothing that happened before."""
-    return np.random.default_rng(np.random.SeedSequence(settings.seed, spawn_key=(_SEARCH, iteration)))
+@dataclass(frozen=True)
+class _Learner:
+    """A search with the budget of penalty points that its values are charged for."""
+
+    settings: Settings
+    search: Search
+    budget: PenaltyBudget
+
+    def ask(self, number: int) -> Array:
+        """What an iteration tries; its generator depends on nothing that happened before. Shape (N, d)."""
+        sequence = np.random.SeedSequence(self.settings.seed, spawn_key=(_SEARCH, number))
+        return self.search.ask(np.random.default_rng(sequence), self.settings.candidates)
+
+    def learn(self, number: int, theta: Array, returns: Array, penalties: Array) -> float:
+        """One update; gives the learning rate."""
+        settings = self.settings
+        rate = learning_rate(settings.schedule, settings.learning_rate, number, settings.iterations)
+        self.search.tell(theta, self.budget.values(returns, penalties), rate)
+        self.budget.update(penalties)
+        return rate
+
+    def check_progress(self, returns: Array) -> None:
+        """See `search.check_progress`."""
+        check_progress(self.search, np.array(self.settings.sigma), returns)
 
 
-def _learn(
-    search: Search,
-    budget: PenaltyBudget,
-    number: int,
-    settings: Settings,
-    theta: Array,
-    returns: Array,
-    penalties: Array,
-) -> float:
-    """One update; gives the learning rate."""
-    rate = learning_rate(settings.schedule, settings.learning_rate, number, settings.iterations)
-    search.tell(theta, budget.values(returns, penalties), rate)
-    budget.update(penalties)
-    return rate
-
-
-def _iterate(search: Search, budget: PenaltyBudget, number: int, settings: Settings, play: Play) -> Iteration:
+def _iterate(learner: _Learner, number: int, play: Play) -> Iteration:
     """One iteration of algorithm 2.1 or 2.2."""
     began = time.monotonic()
-    theta = search.ask(_random(settings, number), settings.candidates)
+    theta = learner.ask(number)
     outcomes = play(number, theta)
     returns, penalties, successes = (
         np.array([np.mean([getattr(one, field) for one in of_one]) for of_one in outcomes])
@@ -182,10 +190,10 @@ def _iterate(search: Search, budget: PenaltyBudget, number: int, settings: Setti
     errors = [one.error for one in flat if one.error is not None]
     if errors:
         raise DivergedError(f"iteration {number}: the player failed {len(errors)} of {len(flat)} episodes; {errors[0]}")
-    check_progress(search, np.array(settings.sigma), returns)
-    multiplier = budget.multiplier
-    rate = _learn(search, budget, number, settings, theta, returns, penalties)
-    check_progress(search, np.array(settings.sigma), returns)
+    learner.check_progress(returns)
+    multiplier = learner.budget.multiplier
+    rate = learner.learn(number, theta, returns, penalties)
+    learner.check_progress(returns)
     violated = sorted({name for one in flat for name in one.violated})
     return Iteration(
         iteration=number,
@@ -194,8 +202,8 @@ def _iterate(search: Search, budget: PenaltyBudget, number: int, settings: Setti
         penalties=tuple(map(float, penalties)),
         successes=tuple(map(float, successes)),
         violations={name: sum(name in one.violated for one in flat) / len(flat) for name in violated},
-        mean=tuple(map(float, search.mean)),
-        sigma=tuple(map(float, search.sigma)),
+        mean=tuple(map(float, learner.search.mean)),
+        sigma=tuple(map(float, learner.search.sigma)),
         learning_rate=rate,
         multiplier=multiplier,
         steps=sum(one.steps for one in flat),

@@ -19,7 +19,7 @@ from airhockey.agents.atacom.features import ACTION_MIRROR
 from airhockey.agents.atacom.network import Network
 from airhockey.agents.atacom.skill import SKILLS
 from airhockey.envs.disturbances import Disturbances
-from airhockey.errors import AirHockeyError
+from airhockey.learning.diverged import DivergedError
 from airhockey.learning.sac.algorithms import OAC, MirroredReplay
 from airhockey.learning.sac.folder import SkillFolder
 from airhockey.learning.sac.records import Line, Settings
@@ -28,10 +28,6 @@ from airhockey.learning.sac.skill_tasks import TASKS
 
 LARGEST_BUFFER = 500_000
 """Transitions; older ones are forgotten."""
-
-
-class DivergedError(AirHockeyError):
-    """A return or a parameter is not finite."""
 
 
 @dataclass

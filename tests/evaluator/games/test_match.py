@@ -11,7 +11,7 @@ from games import course, events_of, film, play_one
 
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.engines.cluster import Cluster
-from airhockey.evaluator.engines.engine import Processes
+from airhockey.evaluator.engines.processes import Processes
 from airhockey.evaluator.match import (
     MatchOptions,
     MatchResult,
@@ -180,7 +180,7 @@ def test_memory_is_flat_over_a_game() -> None:
         return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE") / 1e6
 
     from airhockey.envs.disturbances import load_disturbances
-    from airhockey.evaluator.play.game_player import GamePlayer
+    from airhockey.evaluator.play.game import GamePlayer
     from airhockey.evaluator.runs.game_records import GameJob
 
     play_one("hold", "hold", 50)

@@ -8,13 +8,14 @@ from typing import Any
 import pytest
 from games import play_one
 
-from airhockey.evaluator.engines.engine import Processes
+from airhockey.evaluator.engines.processes import Processes
+from airhockey.evaluator.entries import Entry
 from airhockey.evaluator.match import MatchOptions, begin_match, play_match
 from airhockey.evaluator.play import watchdog as watch
 from airhockey.evaluator.play.watchdog import Watch, culprit, live_games
 from airhockey.evaluator.runs.game_records import GameOptions, GameRecord, Status
 from airhockey.evaluator.runs.journal import read_journal
-from airhockey.evaluator.schedule import Entry, TournamentOptions
+from airhockey.evaluator.schedule import TournamentOptions
 from airhockey.evaluator.tournament import begin_tournament, play_tournament
 
 Submission = Callable[..., str]

@@ -17,11 +17,12 @@ from games import course
 
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.engines.cluster import Cluster
-from airhockey.evaluator.engines.engine import Processes
+from airhockey.evaluator.engines.processes import Processes
+from airhockey.evaluator.entries import Entry
 from airhockey.evaluator.judging.standings import Standings
 from airhockey.evaluator.runs.game_records import GameOptions, GameRecord
 from airhockey.evaluator.runs.journal import read_journal
-from airhockey.evaluator.schedule import Entry, TournamentOptions
+from airhockey.evaluator.schedule import TournamentOptions
 from airhockey.evaluator.tournament import begin_tournament, play_tournament, read_standings, resume_tournament
 from submissions import make_submission
 

@@ -123,10 +123,8 @@ def _link(target: str, name: str = "data.bin") -> Callable[[Path], None]:
     return lambda entry: (entry / name).symlink_to(target)
 
 
-def _hard_link(entry: Path) -> None:
-    secret = entry.parent / "secret.txt"
-    secret.write_text("secret")
-    os.link(secret, entry / "data.bin")
+def _both(*_: object) -> None:
+    """Two things in one expression."""
 
 
 def _deep(entry: Path) -> None:
@@ -170,7 +168,7 @@ ENTRIES: dict[str, Make] = {
     "metadata: authors that are no list": _folder(NOBODY + "authors: {a: b}\n"),
     "metadata: empty": _folder(""),
     "metadata: a folder": _with(
-        lambda entry: ((entry / "submission.yaml").unlink(), (entry / "submission.yaml").mkdir())[-1]
+        lambda entry: _both((entry / "submission.yaml").unlink(), (entry / "submission.yaml").mkdir())
     ),
     "configuration: keys that build_agent does not know": _folder(
         config="speed: 1.0\n", builder=GOOD.replace(", **kwargs", "")
@@ -188,7 +186,7 @@ ENTRIES: dict[str, Make] = {
     "builder: starts processes without a guard": _folder(
         builder=GOOD.replace(
             "self.steps = 0",
-            "self.steps = 0\n        import multiprocessing\n        multiprocessing.get_context('spawn').Process(target=print).start()",
+            "self.steps = 0\n        import multiprocessing as mp\n        mp.get_context('spawn').Process(target=print).start()",
         )
     ),
     "builder: is not there": _with(lambda entry: (entry / "agent_builder.py").unlink()),

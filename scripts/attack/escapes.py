@@ -2,6 +2,7 @@
 
 import contextlib
 import ctypes
+import itertools
 import json
 import os
 import secrets
@@ -131,7 +132,7 @@ def names() -> list[str]:
 
 def _pairs() -> Iterator[tuple[str, str]]:
     lines = (HERE / "inside.py").read_text().splitlines()
-    return zip(lines, lines[1:], strict=False)
+    return itertools.pairwise(lines)
 
 
 @contextlib.contextmanager

@@ -444,8 +444,7 @@ def open_odd_families() -> object:
 
 @attempt
 def find_network_interfaces() -> object:
-    others = [name for _, name in socket.if_nameindex() if name != "lo"]
-    return others
+    return [name for _, name in socket.if_nameindex() if name != "lo"]
 
 
 # ---- the kernel's odd corners

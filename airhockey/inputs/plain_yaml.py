@@ -83,7 +83,7 @@ class _Loader(yaml.SafeLoader):
             raise _refused(event, f"it is nested more than {MAX_DEPTH} deep")
         if self._values > MAX_VALUES:
             raise _refused(event, f"it has more than {MAX_VALUES} values")
-        node = super().compose_node(parent, index)
+        node: Any = super().compose_node(parent, index)
         self._depth -= 1
         if node.tag not in _KINDS:
             raise _refused(node, f"the tag {node.tag.removeprefix(_PLAIN)!r} is not allowed; write plain values")
@@ -117,6 +117,14 @@ class _Loader(yaml.SafeLoader):
         return value
 
 
+def _mapping(loader: _Loader, node: Any) -> Any:
+    return loader.construct_mapping(node, deep=True)
+
+
+def _sequence(loader: _Loader, node: Any) -> Any:
+    return loader.construct_sequence(node, deep=True)
+
+
 def _digits(node: Any) -> str:
     if len(node.value) > MAX_DIGITS:
         raise _refused(node, f"a number of {len(node.value)} characters; {MAX_DIGITS} are allowed")
@@ -145,7 +153,7 @@ def _whole(pattern: re.Pattern[str]) -> re.Pattern[str]:
 
 
 _Loader.yaml_implicit_resolvers = _resolvers()
-_Loader.add_constructor(_PLAIN + "map", lambda loader, node: loader.construct_mapping(node, deep=True))
-_Loader.add_constructor(_PLAIN + "seq", lambda loader, node: loader.construct_sequence(node, deep=True))
+_Loader.add_constructor(_PLAIN + "map", _mapping)
+_Loader.add_constructor(_PLAIN + "seq", _sequence)
 _Loader.add_constructor(_PLAIN + "int", _Loader.construct_int)
 _Loader.add_constructor(_PLAIN + "float", _Loader.construct_float)

@@ -86,14 +86,13 @@ class Place:
     def leftovers(self) -> list[str]:
         """Processes that still run, and temporary files that are still there, a moment later."""
         end = time.monotonic() + 5.0
-        while (
-            found := [
-                *(f"{name} ({pid})" for pid, name in orphans().items()),
-                *sorted(path.name for path in self.temporary.iterdir()),
-            ]
-        ) and (time.monotonic() < end):
+        while (found := self._left()) and time.monotonic() < end:
             time.sleep(0.1)
-        return [str(one) for one in found]
+        return found
+
+    def _left(self) -> list[str]:
+        processes = [f"{name} ({pid})" for pid, name in orphans().items()]
+        return processes + sorted(path.name for path in self.temporary.iterdir())
 
 
 def hockey(*arguments: str) -> list[str]:

@@ -197,7 +197,7 @@ class IsolatedAgent(AgentHandle):
             raise self._exit_error()
         self._pid = self._process.pid if self._first is None else only_child(self._first)
         self._core = SharedCore(self._pid)
-        self._watched = Watched(ProcessTree(self._pid, self._first), self._limits.memory)
+        self._watched = Watched(ProcessTree(self._pid, self._first), self._limits.memory, self._limits.processes)
         self.times = AnswerTimes(self._watched, self._limits)
         for pid in (self._pid, self._first or self._pid):
             # From outside, by one who may: then nobody inside can lower it again.

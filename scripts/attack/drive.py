@@ -21,7 +21,7 @@ def main() -> None:
         agent.episode_start()
         observation = env.reset(seed=0)
         for _ in range(5):
-            observation, *_ = env.step(agent.draw_action(observation))
+            observation, *_ = env.step(agent.act(observation))
         print("played", flush=True)
     except AirHockeyError as error:
         print(f"{type(error).__name__}: {error}", flush=True)

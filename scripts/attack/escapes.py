@@ -39,10 +39,36 @@ ALONE = (
     "print_without_end",
 )
 """Attempts that each have a sandbox of their own: they do not end well."""
+_SHOW = """
+set -e
+t=$(mktemp -d -p /var/tmp)
+mount --bind "$2" "$t"
+mount -t tmpfs -o mode=755 none "$1"
+mkdir -p "$2"
+mount --move "$t" "$2"
+rmdir "$t"
+shift 2
+exec "$@"
+"""
+"""Shows the second folder to everybody, although the first around it is closed to others."""
+
+
+def _as_somebody() -> list[str]:
+    """What runs a command as a user who is nobody; the interpreter may lie in a home that is closed to him."""
+    become = ["setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups"]
+    interpreter = Path(sys.base_prefix)
+    closed = [place for place in interpreter.parents if not place.stat().st_mode & 0o001]
+    return (
+        ["unshare", "--mount", "sh", "-c", _SHOW, "sh", str(closed[-1]), str(interpreter), *become]
+        if closed
+        else become
+    )
+
+
 SURROUNDINGS: dict[str, list[str]] = {
     "root": [],
     "root of a user namespace": ["unshare", "--user", "--map-root-user", "--mount", "--pid", "--fork", "--mount-proc"],
-    "a user": ["setpriv", "--reuid", "65534", "--regid", "65534", "--clear-groups"],
+    "a user": _as_somebody(),
 }
 """Who the organiser is: what is put in front of the command."""
 BUILDER = """

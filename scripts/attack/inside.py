@@ -127,13 +127,16 @@ def read_through_the_root_of_process_1() -> object:
 
 @attempt
 def read_descriptors_of_others() -> object:
-    own = str(os.getpid())
-    return [
-        f"{pid}/{fd}"
-        for pid in os.listdir("/proc")
-        if pid.isdigit() and pid != own
-        for fd in os.listdir(f"/proc/{pid}/fd")
-    ]
+    own, opened = str(os.getpid()), []
+    for pid in os.listdir("/proc"):
+        if pid.isdigit() and pid != own:
+            for fd in set(os.listdir(f"/proc/{pid}/fd")) - {"0", "1", "2"}:  # those three are its own as well
+                try:
+                    os.close(os.open(f"/proc/{pid}/fd/{fd}", os.O_RDONLY | os.O_NONBLOCK))
+                    opened.append(f"{pid}/{fd}")
+                except OSError:
+                    continue
+    return opened
 
 
 @attempt

@@ -68,7 +68,7 @@ def test_their_cpu_time_is_summed_and_kept_when_they_end(family: Any) -> None:
 @pytest.mark.parametrize("family", [(0.0, 150 << 20)], indirect=True)
 def test_who_holds_too_much_together_is_ended(family: Any) -> None:
     family.stdout.readline()
-    modest, greedy = Watched(ProcessTree(family.pid), 1 << 30), Watched(ProcessTree(family.pid), 100 << 20)
+    modest, greedy = Watched(ProcessTree(family.pid), 1 << 30, 9), Watched(ProcessTree(family.pid), 100 << 20, 9)
     watch(modest)
     time.sleep(0.4)
     assert family.poll() is None and modest.excess is None and len(modest.tree.others) == 2
@@ -77,6 +77,15 @@ def test_who_holds_too_much_together_is_ended(family: Any) -> None:
     assert greedy.excess == "its processes together took more than 100 MiB of memory"
     forget(modest)
     forget(greedy)
+
+
+def test_who_has_too_many_processes_is_ended(family: Any) -> None:
+    family.stdout.readline()
+    many = Watched(ProcessTree(family.pid), 1 << 30, 2)
+    watch(many)
+    assert family.wait(10.0) == -signal.SIGKILL
+    assert many.excess == "it had more than 2 processes"
+    forget(many)
 
 
 def test_a_process_that_has_ended_uses_nothing() -> None:

@@ -1,4 +1,5 @@
-"""One thread that looks at all isolated agents, ten times a second: who has other processes, who takes too much memory.
+"""One thread that looks at all isolated agents, ten times a second: who has other processes, who has too many or takes too
+much memory.
 
 Where the kernel counts for us (cgroups) it stops them at once; this watch is there for every other machine: an agent's processes
 are ended when together they hold more than the limit.
@@ -22,26 +23,32 @@ class Watched:
     Args:
         tree: Its processes.
         memory: What they may hold together, in bytes.
+        processes: How many there may be.
 
     Attributes:
         waited: For how long they had been kept waiting for a core when they were last looked at, in [s].
         excess: What they were ended for; None while they keep within the limit.
     """
 
-    def __init__(self, tree: ProcessTree, memory: int) -> None:
-        self.tree, self._memory = tree, memory
+    def __init__(self, tree: ProcessTree, memory: int, processes: int) -> None:
+        self.tree, self._memory, self._processes = tree, memory, processes
         self.waited = 0.0
         self.excess: str | None = None
 
     def look(self) -> None:
-        """See who there is, and end all where they hold too much."""
+        """See who there is, and end all where they are too many or hold too much."""
         self.tree.look()
         self.waited = self.tree.waited()
-        if self.tree.memory() > self._memory and self.tree.shared_memory_apart() > self._memory:
-            self.excess = f"its processes together took more than {self._memory >> 20} MiB of memory"
-            for pid in (*self.tree.others, self.tree.agent):
-                with contextlib.suppress(OSError):
-                    os.kill(pid, signal.SIGKILL)
+        if len(self.tree.others) >= self._processes:
+            self._end(f"it had more than {self._processes} processes")
+        elif self.tree.memory() > self._memory and self.tree.shared_memory_apart() > self._memory:
+            self._end(f"its processes together took more than {self._memory >> 20} MiB of memory")
+
+    def _end(self, excess: str) -> None:
+        self.excess = excess
+        for pid in (self.tree.top, self.tree.agent, *self.tree.others):  # with a sandbox's first all others end
+            with contextlib.suppress(OSError):
+                os.kill(pid, signal.SIGKILL)
 
 
 _all: "weakref.WeakSet[Watched]" = weakref.WeakSet()

@@ -18,6 +18,7 @@ class ProcessTree:
         top: Number of the process above it, of which all others descend: process 1 of a sandbox; default: the agent itself.
 
     Attributes:
+        agent, top: As given.
         others: The agent's other processes, as they were last seen.
         had_others: Whether there ever were any.
     """
@@ -25,13 +26,13 @@ class ProcessTree:
     def __init__(self, agent: int, top: int | None = None) -> None:
         self.agent, self.had_others = agent, False
         self.others: tuple[int, ...] = ()
-        self._top = agent if top is None else top
+        self.top = agent if top is None else top
         self._used: dict[int, float] = {}
         self._gone = 0.0
 
     def look(self) -> tuple[int, ...]:
         """See which other processes there are now."""
-        found = tuple(pid for pid in descendants(self._top) if pid != self.agent)
+        found = tuple(pid for pid in descendants(self.top) if pid != self.agent)
         self.others = found
         self.had_others = self.had_others or bool(found)
         return found

@@ -76,11 +76,22 @@ def game_model(robot: RobotSpec, n_robots: int, visual: bool = True) -> mujoco.M
 
 def robot_model(robot: RobotSpec) -> mujoco.MjModel:
     """The arm alone, base at the origin, without the mallet: what the joint controller and the agents know."""
+    return _robot_spec(robot).compile()
+
+
+def robot_xml(robot: RobotSpec) -> str:
+    """The same as MJCF, for agents in an interpreter of their own."""
+    spec = _robot_spec(robot)
+    spec.compile()
+    return str(spec.to_xml())
+
+
+def _robot_spec(robot: RobotSpec) -> Any:
     spec = _empty_spec()
     base = spec.worldbody.add_body(name=f"{robot.prefix}_1/base")
     _add_robot(spec, base, robot, 1, visual=False, playing=False)
     _add_outline(spec, robot)
-    return spec.compile()
+    return spec
 
 
 def _empty_spec() -> Any:

@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from airhockey.agents.submission import is_submission, submission_folder
+from airhockey.agents.packaging.checkout import find_checkout
+from airhockey.agents.submission import is_submission
+from airhockey.errors import ConfigurationError
 from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.modes import REMOTE, Mode
@@ -20,6 +22,7 @@ def build_agent(
     mode: Mode = "none",
     limits: Limits | None = None,
     seed: np.random.SeedSequence | None = None,
+    python: str | None = None,
     **kwargs: Any,
 ) -> AgentHandle:
     """Build an agent for one robot of an environment, whose interpolation order there is the order of its actions.
@@ -31,6 +34,7 @@ def build_agent(
         mode: Where it lives.
         limits: What it may use there, and how long anybody waits.
         seed: Seeds the generators of a process of its own; in this process the caller does it.
+        python: Another interpreter for a submission's process.
         kwargs: Handed to the agent.
 
     Raises:
@@ -43,6 +47,8 @@ def build_agent(
         from airhockey.evaluator.isolation.remote import RemoteAgent
 
         return RemoteAgent(agent, env.env_info, order, limits.patience)
+    if python is not None:
+        return _build_foreign(agent, env, agent_id, mode, limits, seed, python, kwargs)
     if mode == "none":
         from airhockey.evaluator.isolation.build_local import build_local
 
@@ -50,8 +56,8 @@ def build_agent(
     from airhockey.evaluator.isolation.agent_client import IsolatedAgent
     from airhockey.evaluator.isolation.launch import plain, sandboxed
 
-    folder = submission_folder(Path(agent).expanduser()) if is_submission(agent) else None
-    launch = plain(folder) if mode == "process" else sandboxed(folder, limits)
+    checkout = find_checkout(Path(agent).expanduser()) if is_submission(agent) else None
+    launch = plain(checkout) if mode == "process" else sandboxed(checkout, limits)
     job = {
         "agent": launch.submission or agent,
         "env": env.name,
@@ -60,4 +66,31 @@ def build_agent(
         "agent_id": agent_id,
         "kwargs": kwargs,
     }
+    return IsolatedAgent(launch, job, limits, seed)
+
+
+def _build_foreign(
+    agent: str,
+    env: Any,
+    agent_id: int,
+    mode: Mode,
+    limits: Limits,
+    seed: np.random.SeedSequence | None,
+    python: str,
+    kwargs: dict[str, Any],
+) -> AgentHandle:
+    """A submission in an interpreter of its own."""
+    from airhockey.evaluator.isolation.agent_client import IsolatedAgent
+    from airhockey.evaluator.isolation.interpreters import foreign_job, interpreter
+    from airhockey.evaluator.isolation.launch import plain, sandboxed
+
+    if not is_submission(agent) or mode == "none":
+        raise ConfigurationError(
+            f"--python is for submissions in a process of their own; {agent!r} runs with the evaluator "
+            "(--isolate process or sandbox for a submission)"
+        )
+    own, checkout = interpreter(python), find_checkout(Path(agent).expanduser())
+    launch = plain(checkout, own) if mode == "process" else sandboxed(checkout, limits, own)
+    inside = str(checkout.root) if mode == "process" else str(launch.submission)
+    job = foreign_job(checkout, inside, env, agent_id, kwargs) | {"agent": agent}
     return IsolatedAgent(launch, job, limits, seed)

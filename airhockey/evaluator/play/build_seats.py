@@ -30,6 +30,7 @@ class Entrant:
         limits: What it may use there, and how long anybody waits.
         parameters: Of the rule-based player.
         seed: Of the generators of a process of its own, while it is built.
+        python: Another interpreter for its process.
     """
 
     agent: str
@@ -38,6 +39,7 @@ class Entrant:
     limits: Limits = field(default_factory=Limits)
     parameters: str | None = None
     seed: np.random.SeedSequence | None = None
+    python: str | None = None
 
     @property
     def first_order(self) -> int | None:
@@ -64,7 +66,9 @@ class Entrant:
         if self.parameters is not None:
             kwargs["parameters"] = self.parameters
         mode = choose(self.agent, None if self.isolate == "auto" else self.isolate).mode
-        return build_agent(self.agent, env, agent_id, mode=mode, limits=self.limits, seed=self.seed, **kwargs)
+        return build_agent(
+            self.agent, env, agent_id, mode=mode, limits=self.limits, seed=self.seed, python=self.python, **kwargs
+        )
 
 
 def build_seats(

@@ -27,6 +27,8 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
         edition: Rule edition.
         isolate: Where the agent lives: with the evaluator, in a process of its own, or in a sandbox.
         patience: Longest time for an answer of an agent that lives elsewhere, in [s].
+        real_time: Pace of the steps relative to the robot's, for agents that think beside them; 0: as fast as possible.
+        python: Absolute path of another interpreter for the agent's process; None for the evaluator's own.
         parameters: Of the rule-based player: a name that it knows or the absolute path of a YAML file; None for its own.
     """
 
@@ -40,6 +42,8 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     edition: str = "2023"
     isolate: Literal["none", "process", "sandbox"] = "none"
     patience: float = 60.0
+    real_time: float = 0.0
+    python: str | None = None
     parameters: str | None = None
 
 

@@ -92,4 +92,5 @@ def _build_foreign(
     own, checkout = interpreter(python), find_checkout(Path(agent).expanduser())
     launch = plain(checkout, own) if mode == "process" else sandboxed(checkout, limits, own)
     inside = str(checkout.root) if mode == "process" else str(launch.submission)
-    return IsolatedAgent(launch, foreign_job(checkout, inside, env, agent_id, kwargs), limits, seed)
+    job = foreign_job(checkout, inside, env, agent_id, kwargs) | {"agent": agent}
+    return IsolatedAgent(launch, job, limits, seed)

@@ -17,6 +17,7 @@ import os
 import random
 import resource
 import signal
+import struct
 import sys
 import traceback
 import types
@@ -25,6 +26,7 @@ import numpy as np
 
 BUILD, EPISODE, ACT, STOP = b"B", b"E", b"A", b"S"
 HELLO, DONE, RAISED, BAD_ACTION = b"H", b"K", b"X", b"N"
+MESSAGE = 9  # a word and a nonce, which the reply repeats
 OBSERVATION, ACTION, TEXT, SIZE = 64, 4096, 65536, 131072
 MAX_DIMENSIONS = 4
 MAX_ACTION = (TEXT - ACTION) // 8
@@ -42,10 +44,11 @@ def main():
     server = Server(memory)
     os.write(replies, HELLO)
     while True:
-        word = os.read(requests, 1)
-        if not word:
+        message = os.read(requests, MESSAGE)
+        if not message:
             break
-        os.write(replies, server.answer(word))
+        word, nonce = message[:1], message[1:]
+        os.write(replies, server.answer(word) + nonce)
         if word == STOP:
             break
     os._exit(0)
@@ -109,7 +112,7 @@ class Server:
         return DONE
 
     def _build(self, job):
-        restrict(job)
+        restrict(job["restrictions"])
         seed(job["seed"])
         self._size = job["size"]
         self._agent = build(job)
@@ -163,8 +166,8 @@ def seed(words):
 
 
 def restrict(job):
-    """Die with the evaluator, be the first to go when memory runs out, keep to the limits, and be nobody."""
-    libc = ctypes.CDLL(None)
+    """Die with the evaluator, be the first to go when memory runs out, keep to the limits, be nobody; see `restrict.py`."""
+    libc = ctypes.CDLL(None, use_errno=True)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         with open("/proc/self/oom_score_adj", "w") as score:
@@ -173,7 +176,7 @@ def restrict(job):
         pass
     limits = job["limits"]
     kinds = {"memory": "AS", "cpu": "CPU", "file": "FSIZE", "open_files": "NOFILE"}
-    if job["counted"]:
+    if job["sandbox"]:
         kinds["processes"] = "NPROC"
     for name, kind in kinds.items():
         number = getattr(resource, "RLIMIT_" + kind)
@@ -186,8 +189,27 @@ def restrict(job):
         os.setgroups([])
         os.setresgid(user, user, user)
         os.setresuid(user, user, user)
+    if job["sandbox"]:
+        filter_system_calls(libc, job["kernel"])
+    if user is not None:
         libc.prctl(4, 1, 0, 0, 0)
     libc.prctl(1, int(signal.SIGKILL), 0, 0, 0)
+
+
+def filter_system_calls(libc, kernel):
+    """Drop every capability, leave the session's keyring, and put the evaluator's filter on this process for good."""
+    libc.syscall.restype = ctypes.c_long
+    libc.prctl(47, 4, 0, 0, 0)
+    header, none = (ctypes.c_uint32 * 2)(0x20080522, 0), (ctypes.c_uint32 * 6)()
+    if libc.syscall(ctypes.c_long(kernel["capset"]), header, none) != 0:
+        raise OSError("capabilities cannot be dropped")
+    libc.syscall(ctypes.c_long(kernel["keyctl"]), ctypes.c_long(1), None)
+    libc.prctl(38, 1, 0, 0, 0)
+    raw = bytes.fromhex(kernel["program"])
+    buffer = ctypes.create_string_buffer(raw, len(raw))
+    described_program = struct.pack("@HP", len(raw) // 8, ctypes.addressof(buffer))
+    if libc.syscall(ctypes.c_long(kernel["seccomp"]), ctypes.c_long(1), ctypes.c_long(1), described_program) != 0:
+        raise OSError("the kernel takes no filter of system calls")
 
 
 def build(job):

@@ -1,8 +1,7 @@
-"""Which processes are the agent's, by the numbers that they have out here, and what CPU time they have used."""
+"""Which processes are the agent's, by the numbers that they have out here."""
 
 import json
 import os
-import time
 from pathlib import Path
 
 
@@ -32,29 +31,3 @@ def only_child(parent: int) -> int:
         except OSError:
             continue
     return parent
-
-
-def descendants(parent: int) -> list[int]:
-    """The numbers of everything that a process has started and that still runs."""
-    children: dict[int, list[int]] = {}
-    for entry in Path("/proc").iterdir():
-        if not entry.name.isdigit():
-            continue
-        try:
-            stat = (entry / "stat").read_text()
-        except OSError:
-            continue
-        children.setdefault(int(stat.rpartition(")")[2].split()[1]), []).append(int(entry.name))
-    found, level = list[int](), [parent]
-    while level:
-        level = [child for pid in level for child in children.get(pid, ())]
-        found += level
-    return found
-
-
-def cpu_time(pid: int) -> float:
-    """CPU time that a process has used, in [s]; 0 once it has ended."""
-    try:
-        return time.clock_gettime((~pid << 3) | 2)  # what clock_getcpuclockid gives
-    except OSError:
-        return 0.0

@@ -4,13 +4,13 @@ It fetches packages and compiles from nothing, so it runs in CI, or where CLEAN_
 """
 
 import os
-import shutil
 import subprocess
 import sys
 import venv
 from pathlib import Path
 
 import pytest
+from sources import copy_sources
 from submission_examples import SUBMISSIONS
 
 ROOT = Path(__file__).parent.parent
@@ -38,8 +38,7 @@ def clean(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A fresh environment with the wheel and the official NumPy; gives its folder of executables."""
     place = tmp_path_factory.mktemp("clean")
     source = place / "source"
-    ignore = shutil.ignore_patterns(".*", "runs", "build", "dist", "*.egg-info", "__pycache__", "tests")
-    shutil.copytree(ROOT, source, symlinks=True, ignore=ignore)
+    copy_sources(ROOT, source)
     build = "from setuptools import build_meta; build_meta.build_wheel('dist')"
     subprocess.run([sys.executable, "-c", build], cwd=source, check=True, capture_output=True)
     (wheel,) = (source / "dist").glob("*.whl")

@@ -33,6 +33,13 @@ if TYPE_CHECKING:
     metavar="NAME|FILE",
     help="Parameters of the rule-based player: tuned, thesis, or a YAML file, as `hockey train pgpe` leaves it.",
 )
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="control.NAME=VALUE",
+    help="Change our players' controller, as in control.solver=osqp or control.kinematics=pinocchio.",
+)
 @click.option("--episodes", type=click.IntRange(min=1), default=1000, show_default=True, help="Episodes of each task.")
 @common.options(common.seed, common.jobs, common.cluster, common.disturbances)
 @click.option(
@@ -106,6 +113,7 @@ def _options(given: dict[str, Any]) -> "Options":
         patience=given["patience"],
         real_time=real_time_of(given, (agent,), environments[0]),
         python=python_of(given["python"]),
+        settings=given["settings"],
         parameters=None if given["parameters"] is None else from_anywhere(given["parameters"]),
     )
 

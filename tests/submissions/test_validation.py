@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from submission_examples import SUBMISSIONS
+from submission_examples import SUBMISSIONS, ZOO
 from tools import needs_opencv
 
 from airhockey.agents.packaging.packing import pack
@@ -130,3 +130,47 @@ def test_an_agent_with_preprocessors_is_as_fit_as_the_evaluator_finds_it(tmp_pat
     outcome = try_out(str(tmp_path), task, "none", LIMITS, 5)
     assert isinstance(outcome, Trial), outcome
     assert outcome.steps == 5
+
+
+NEEDS_MUSHROOM = pytest.mark.skipif(importlib.util.find_spec("mushroom_rl") is None, reason="needs the extra mushroom")
+
+
+@NEEDS_MUSHROOM
+def test_a_checkout_plays_what_its_configuration_names_on_both_sides(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ZOO / "no_base_class")
+    verdict = validate(Path("."), "process", LIMITS, steps=3)
+    assert [trial.env for trial in verdict.trials] == ["3dof-defend", "7dof-hit", "tournament", "tournament (away)"]
+    assert verdict.name == "no_base_class" and "\n" not in verdict.conclusion
+    slow = [problem for problem in verdict.problems if "ms" in problem.what]  # a busy machine
+    assert list(verdict.problems) == slow
+    assert verdict.conclusion.startswith("no_base_class: plays 3dof-defend, 7dof-hit, tournament, tournament (away)")
+    assert any("layout is the official one" in note for note in verdict.notes)
+
+
+@NEEDS_MUSHROOM
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("helper_out_of_reach", ["does not play, because", "training/tactics", "the entry's cause", "mend the import"]),
+        ("package_missing", ["does not play, because", "this installation's cause", "what to do: install it"]),
+        ("size_one_arrays", ["the libraries' cause", "x.item()", "--python PATH"]),
+        ("template_as_it_was", ["NotImplementedError", "the entry's cause", "name in env what the agent plays"]),
+    ],
+)
+def test_one_line_says_why_whose_cause_and_what_to_do(name: str, words: list[str]) -> None:
+    verdict = validate(ZOO / name, "process", LIMITS, steps=3)
+    assert verdict.problems and "\n" not in verdict.conclusion
+    assert [word for word in words if word not in verdict.conclusion] == []
+
+
+@NEEDS_MUSHROOM
+def test_the_verdict_says_whose_copy_of_the_package_plays() -> None:
+    verdict = validate(ZOO / "own_copy_extended", "process", LIMITS, steps=3)
+    assert any("its own copy" in note and "AgentBase.get_puck_history" in note for note in verdict.notes)
+
+
+def test_an_environment_that_there_is_not_is_named(bad: Callable[..., str]) -> None:
+    folder = Path(bad())
+    (folder / "agent_config.yml").write_text("env: [7dof-hot]\n")
+    verdict = validate(folder, "process", LIMITS, steps=3)
+    assert "7dof-hit" in verdict.problems[0].what and verdict.problems[0].where == "env of agent_config.yml"

@@ -31,6 +31,7 @@ class Entrant:
         parameters: Of the rule-based player.
         seed: Of the generators of a process of its own, while it is built.
         python: Another interpreter for its process.
+        settings: Of our own players' controller.
     """
 
     agent: str
@@ -40,6 +41,7 @@ class Entrant:
     parameters: str | None = None
     seed: np.random.SeedSequence | None = None
     python: str | None = None
+    settings: tuple[str, ...] = ()
 
     @property
     def first_order(self) -> int | None:
@@ -63,6 +65,8 @@ class Entrant:
         if self.order != "agent" and self.agent in AGENTS:
             # Our own agents can play any order; a submission's order is a matter of its agent_config.yml.
             kwargs["interpolation_order"] = env.formats[agent_id - 1].order
+        if self.settings and self.agent in AGENTS:
+            kwargs["settings"] = self.settings
         if self.parameters is not None:
             kwargs["parameters"] = self.parameters
         mode = choose(self.agent, None if self.isolate == "auto" else self.isolate).mode

@@ -120,6 +120,7 @@ class EpisodePlayer:
             options.parameters,
             seed,
             options.python,
+            options.settings,
         )
         make = functools.partial(envs.make, name, disturbances=self.profile, edition=options.edition)
         env, seats = build_seats(make, [entrant], Care(options.clock), seed)

@@ -29,6 +29,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
         patience: Longest time for an answer of an agent that lives elsewhere, in [s].
         real_time: Pace of the steps relative to the robot's, for agents that think beside them; 0: as fast as possible.
         python: Absolute path of another interpreter for the agent's process; None for the evaluator's own.
+        settings: Of our own players' controller, as in "control.solver=osqp".
         parameters: Of the rule-based player: a name that it knows or the absolute path of a YAML file; None for its own.
     """
 
@@ -44,6 +45,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     patience: float = 60.0
     real_time: float = 0.0
     python: str | None = None
+    settings: tuple[str, ...] = ()
     parameters: str | None = None
 
 

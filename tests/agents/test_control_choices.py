@@ -55,7 +55,7 @@ def test_what_cannot_be_chosen_is_refused(setting: str) -> None:
         AGENTS["planner"].build(envs.make("7dof-hit").env_info, settings=[setting])
 
 
-@pytest.mark.parametrize(("setting", "module"), zip(CHOICES, ["daqp", "osqp", "pinocchio"], strict=True))
+@pytest.mark.parametrize(("setting", "module"), list(zip(CHOICES, ["daqp", "osqp", "pinocchio"], strict=True)))
 def test_what_is_not_installed_names_the_extra(setting: str, module: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, module, None)
     monkeypatch.delitem(__import__("sys").modules, "airhockey.agents.control.pinocchio_model", raising=False)

@@ -18,7 +18,7 @@ from airhockey.errors import ConfigurationError
 MAX_BYTES = 256 << 10
 """No configuration is larger, in bytes."""
 MAX_DEPTH = 32
-MAX_VALUES = 50_000
+MAX_VALUES = 10_000
 MAX_DIGITS = 40
 _INT = re.compile(r"[-+]?(?:0|[1-9][0-9_]*|0x[0-9a-fA-F_]+|0o[0-7_]+|0[0-9_]+)")
 _FLOAT = re.compile(

@@ -25,7 +25,9 @@ except ImportError as error:
         f"this interface needs Gymnasium, which cannot be imported ({error}); install it with: pip install 'airhockey[rl]'"
     ) from error
 
+from airhockey.envs.copying import Copyable
 from airhockey.envs.environment import Environment, Order
+from airhockey.envs.tasks.reward import RewardedState
 
 Array = NDArray[np.float64]
 Reward = Callable[[Any, Array, Any, Array, bool], float]
@@ -34,11 +36,12 @@ NAMESPACE = "airhockey"
 TASKS = ("3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare")
 
 
-class AirHockeyEnv(gymnasium.Env[Array, Array]):
+class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
     """One of the challenge's tasks; `airhockey.envs.Environment` says what an observation and an action are.
 
     An observation's space is unbounded: joints overshoot and noise reaches beyond any limit. `info` holds `success`,
-    `constraints_value` and `jerk`. An episode is truncated at the task's horizon.
+    `constraints_value` and `jerk`. An episode is truncated at the task's horizon. It can be copied, pickled, saved and
+    restored as `airhockey.envs.Environment` can.
 
     Args:
         name: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend" or "7dof-prepare".
@@ -93,6 +96,16 @@ class AirHockeyEnv(gymnasium.Env[Array, Array]):
         else:
             reward = float(info["success"]) if absorbing or truncated else 0.0
         return observation, reward, absorbing, truncated, info
+
+    def get_state(self) -> RewardedState:
+        """The present moment; see `airhockey.envs.Environment.get_state`. A reward of this package is part of it."""
+        return RewardedState.of(self.environment, self._reward)
+
+    def set_state(self, state: RewardedState) -> None:
+        """Go to a moment that this environment, or one made with the same arguments, saved."""
+        state.restore(self.environment, self._reward)
+
+    state = property(get_state, set_state, doc="The present moment; see `get_state` and `set_state`.")
 
 
 def register() -> None:

@@ -22,6 +22,7 @@ except ImportError as error:
     ) from error
 
 from airhockey.envs.actions import ActionFormat
+from airhockey.envs.copying import Copyable
 from airhockey.envs.environment import Environment, Order
 from airhockey.envs.tasks.game import points_reward
 
@@ -30,12 +31,13 @@ ID = "airhockey/tournament-v0"
 PLAYERS = ("home", "away")
 
 
-class TournamentEnv(pettingzoo.ParallelEnv[str, Array, Array]):
+class TournamentEnv(Copyable, pettingzoo.ParallelEnv[str, Array, Array]):
     """A whole game, 45,000 control steps: every point, fault or stuck puck is followed by the next serve.
 
     Each player sees the table from its own side; see `airhockey.envs.Environment`. The reward is +1 for a point and −1 for
     the opponent's. A player's `info` holds `constraints_value`, its `score` and `faults`, and `serve`: whether the
-    observation is the first of a new serve (where an agent's `episode_start` is due). The game is truncated at its end.
+    observation is the first of a new serve (where an agent's `episode_start` is due). The game is truncated at its end. It can
+    be copied, pickled, saved and restored as `airhockey.envs.Environment` can.
 
     Args:
         interpolation_order: 1, 2, 3, 4, 5, -1 or None, or a pair of them.
@@ -58,6 +60,7 @@ class TournamentEnv(pettingzoo.ParallelEnv[str, Array, Array]):
         self.possible_agents = list(PLAYERS)
         self.agents: list[str] = []
         self.render_mode = None
+        self._step, self._score = 0, [0, 0]
         self._steps = self.environment.horizon if max_cycles is None else max_cycles
         seen = self.environment.env_info["rl_info"].observation_space.shape
         robot = self.environment.simulation.robot
@@ -107,6 +110,16 @@ class TournamentEnv(pettingzoo.ParallelEnv[str, Array, Array]):
         if ended:
             self.agents = []
         return self._split(observation), rewards, dict.fromkeys(PLAYERS, False), dict.fromkeys(PLAYERS, ended), infos
+
+    def get_state(self) -> tuple[Any, ...]:
+        """The present moment; see `airhockey.envs.Environment.get_state`."""
+        return self.environment.get_state(), tuple(self.agents), self._step, tuple(self._score)
+
+    def set_state(self, state: tuple[Any, ...]) -> None:
+        """Go to a moment that this environment, or one made with the same arguments, saved."""
+        environment, agents, self._step, score = state
+        self.environment.set_state(environment)
+        self.agents, self._score = list(agents), list(score)
 
     def _split(self, observation: Array) -> dict[str, Array]:
         half = observation.size // 2

@@ -5,7 +5,8 @@ import engine_functions
 import pytest
 
 from airhockey.errors import AirHockeyError
-from airhockey.evaluator.engines.engine import InProcess, JobFailed, engine_for
+from airhockey.evaluator.engines.engine import InProcess, engine_for
+from airhockey.evaluator.engines.pool import JobFailed
 from airhockey.evaluator.engines.processes import Processes
 
 

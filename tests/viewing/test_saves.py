@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import numpy as np
-from airhockey.evaluator.play.game_player import Game
+from airhockey.evaluator.play.game import Game
 from courses import Course
 from games import JOB, side
 

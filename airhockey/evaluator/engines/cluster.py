@@ -20,7 +20,8 @@ from typing import Any, TypeVar
 
 from airhockey import envs
 from airhockey.errors import AirHockeyError, ConfigurationError, MissingDependencyError
-from airhockey.evaluator.engines.engine import Engine, JobFailed, engine_for
+from airhockey.evaluator.engines.engine import Engine, engine_for
+from airhockey.evaluator.engines.pool import JobFailed
 from airhockey.evaluator.engines.processes import Processes
 from airhockey.evaluator.engines.workers import ONE_THREAD, SAFE_PATH, children_environment, close, no_interrupts
 

@@ -6,7 +6,7 @@ from multiprocessing import connection
 from typing import Any, TypeVar
 
 from airhockey.errors import AirHockeyError
-from airhockey.evaluator.engines.engine import JobFailed, Pool
+from airhockey.evaluator.engines.pool import JobFailed, Pool
 from airhockey.evaluator.engines.workers import Task, Worker
 
 Job = TypeVar("Job")

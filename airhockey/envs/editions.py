@@ -160,7 +160,7 @@ def edition(name: str = "2023") -> Edition:
         raise unknown("edition", name, available())
     text = resources.files("airhockey.envs").joinpath(f"assets/editions/{name}.yaml").read_text(encoding="utf-8")
     try:
-        return msgspec.convert(_with_lengths(load_yaml(text, f"{name}.yaml")), Edition)
+        return msgspec.convert(_with_lengths(load_yaml(text, f"{name}.yaml", aliases=True)), Edition)
     except msgspec.ValidationError as error:
         raise ConfigurationError(f"edition {name!r} is not valid: {error}") from error
 

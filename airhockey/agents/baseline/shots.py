@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from airhockey.agents.baseline.aiming import after_strike, mirrored, strike_normal
 from airhockey.agents.baseline.flight import FLIGHT_STEP, arrives, fly, probability_positive, probability_within
+from airhockey.agents.baseline.kinds import WAY
 from airhockey.agents.baseline.rules import Rules
 from airhockey.agents.compiling import compiled
 
@@ -23,6 +24,7 @@ AROUND = 0.3
 """Time that it takes to go round the puck, in [s]."""
 CORRECTIONS = 2
 """Of the aim of a bounced shot, after its flight: the mirror does not know that a bounce takes tangential velocity, too."""
+_DECAY = 3  # place in the constants of `PuckMotion`
 THERE = 0.02
 """Distance from which the mallet counts as being where a strike begins, in [m]."""
 GRAIN = 0.005
@@ -36,7 +38,7 @@ class Shot(NamedTuple):
         value: Probability of a goal, less what waiting costs; 0 where the strike is impossible.
         wait: Time until contact, from now, in [s].
         aim: y on the goal line that is aimed at, in [m].
-        wall: −1, 0 or 1: bounces off the right wall, none, the left one.
+        wall: 0: no bounce; else how many, negative where the first is off the right wall.
         speed: Of the mallet, in [m]/[s].
         normal: Direction in which the mallet is commanded. Shape (2,).
         mallet: Centre of the mallet at contact, in [m]. Shape (2,).
@@ -61,6 +63,8 @@ def judge(
     opponent: Array,
     doubt: float,
     margin: float,
+    pace: float,
+    heeds: bool,
     rules: Rules,
 ) -> Shot:
     """Work out a shot and its value.
@@ -72,6 +76,7 @@ def judge(
         opponent: As for `fly`.
         doubt: Standard deviation of where the opponent's mallet will be, in [m].
         margin: Time to spare that the way to the strike's beginning must leave, in [s].
+        pace, heeds: As in `kinds.Kind`.
         rules: Constants.
     """
     nothing = Shot(0.0, wait, aim, wall, 0.0, np.zeros(2), np.zeros(2))
@@ -79,8 +84,11 @@ def judge(
         return nothing
     puck = seen.copy()
     puck[3] = rules.drift_kept * seen[3] + rules.spin_share * rules.puck_radius * seen[4]
-    target = aim if wall == 0.0 else mirrored(aim, wall * rules.wall, rules.restitution)
+    rims = round(abs(wall))
+    target = aim if rims == 0 else mirrored(aim, wall * rules.wall, rims, rules.restitution)
     speed = float(np.interp(puck[0] - rules.contact, rules.speed_places, rules.speeds))
+    leaving = pace + rules.motion[_DECAY] * (rules.goal_line - puck[0] - WAY)
+    speed = min(speed, (leaving + (rules.gain - 1.0) * puck[2]) / rules.gain)
     normal = _towards(puck, target, speed, rules)
     room = room_speed(puck[:2] - rules.contact * normal, normal, rules)
     if room < speed:  # a slower mallet must strike more from the side that the puck moves to
@@ -91,10 +99,11 @@ def judge(
     if speed < rules.least_speed or normal[0] < FORWARD or not possible(mallet, normal, speed, spare, tip, puck, rules):
         return nothing  # before the flight, which costs most
     goal, gap, length, passing = fly(_struck(puck, normal, speed, rules), opponent, wait / FLIGHT_STEP, rules)
-    for _ in range(CORRECTIONS if wall != 0.0 else 0):
+    turns = 1.0 if rims % 2 == 0 else -1.0  # in an odd number of mirrors, left and right are swapped
+    for _ in range(CORRECTIONS * rims):
         if not arrives(goal):
             return nothing
-        target += (goal - aim) / rules.restitution  # in the mirror, left and right are swapped
+        target += turns * (aim - goal) / rules.restitution**rims
         normal = _towards(puck, target, speed, rules)
         mallet = puck[:2] - rules.contact * normal
         if normal[0] < FORWARD or not possible(mallet, normal, speed, spare, tip, puck, rules):
@@ -102,11 +111,13 @@ def judge(
         goal, gap, length, passing = fly(_struck(puck, normal, speed, rules), opponent, wait / FLIGHT_STEP, rules)
     value = 0.0
     if arrives(goal):
-        spread = length * (rules.direction_spread + (rules.bounce_spread if wall != 0.0 else 0.0)) + GRAIN
+        spread = length * (rules.direction_spread + rims * rules.bounce_spread) + GRAIN
         late = rules.timing_spread * passing
         # The way to the opponent is shorter than the whole flight, and it moves across the puck's way only in part.
         apart = sqrt((0.8 * spread) ** 2 + (0.4 * late) ** 2 + doubt**2) + GRAIN
-        value = probability_within(goal, rules.goal_half_width, spread) * probability_positive(gap, apart)
+        value = probability_within(goal, rules.goal_half_width, spread)
+        if heeds:
+            value *= probability_positive(gap, apart)
         value *= exp(-rules.patience * wait)
     commanded = turned(normal, rules.turn)
     return Shot(value, wait, aim, wall, speed, commanded, puck[:2] - rules.contact * commanded)

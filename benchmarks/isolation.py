@@ -54,7 +54,7 @@ def measure(env: Any, agent: str, modes: tuple[Mode, ...], steps: int) -> dict[M
                 observation = env.reset(seed=len(times[mode]))
                 for _ in range(ROUND):
                     began = time.perf_counter()
-                    action = player.draw_action(observation)
+                    action = player.act(observation)
                     times[mode].append(time.perf_counter() - began)
                     observation, *_ = env.step(action)
     finally:

@@ -2,10 +2,10 @@
 
     python benchmarks/shots.py [--keepers planner thesis benchmarks/opponents/wall] [--shots 100] [--disturbances server]
 
-The puck is launched in our half, aimed at a point inside the goal, straight or by one, two or three rims, at a speed, with a spin;
-the keeper (player 2) stands at home, where a shot of its own has left it, or beside. So these are the odds of a shot without the arm
-that plays it: the bound of what a player can get out of its kind. The keeper plays on until the puck is in, has come
-back over the middle or lies still.
+The puck is launched in our half, aimed at a point inside the goal, straight or by one, two or three rims, at a speed, with a
+spin; the keeper (player 2) stands at home, where a shot of its own has left it, or beside. So these are the odds of a shot
+without the arm that plays it: the bound of what a player can get out of its kind. The keeper plays on until the puck is in,
+has come back over the middle or lies still.
 """
 
 import argparse
@@ -143,7 +143,9 @@ def odds(keeper: str, kinds: list[Kind], shots: int, disturbances: str, seed: in
 def rows_of(options: argparse.Namespace) -> list[Kind]:
     """What the options ask for: everything at home; of the other states and spins, one speed in two."""
     kinds = [Kind(rims, speed, 0.0, state) for state, rims, speed in product(options.states, RIMS, options.speeds)]
-    return kinds + [Kind(rims, options.speeds[-1], spin, "home") for rims in (0, 1) for spin in SPINS if spin and options.spin]
+    return kinds + [
+        Kind(rims, options.speeds[-1], spin, "home") for rims in (0, 1) for spin in SPINS if spin and options.spin
+    ]
 
 
 def main() -> None:
@@ -158,7 +160,9 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     options = parser.parse_args()
     kinds = rows_of(options)
-    print(f"goals per 100 shots (95 % interval), {options.disturbances}, {options.shots} shots per cell, seed {options.seed}")
+    print(
+        f"goals per 100 shots (95 % interval), {options.disturbances}, {options.shots} shots per cell, seed {options.seed}"
+    )
     print("| keeper | its mallet | rims | spin | " + " | ".join(f"{speed:g} m/s" for speed in options.speeds) + " |")
     print("|---" * (4 + len(options.speeds)) + "|")
     for keeper in options.keepers:
@@ -170,7 +174,9 @@ def main() -> None:
                 goals, count = found.get(Kind(rims, speed, spin, state), (0, 0))
                 low, high = wilson_interval(goals, count) if count else (0.0, 1.0)
                 cells.append(f"{100 * goals / count:.0f} ({100 * low:.0f}–{100 * high:.0f})" if count else "—")
-            print(f"| {keeper.rpartition('/')[2]} | {state} | {rims} | {spin:g} | " + " | ".join(cells) + " |", flush=True)
+            print(
+                f"| {keeper.rpartition('/')[2]} | {state} | {rims} | {spin:g} | " + " | ".join(cells) + " |", flush=True
+            )
 
 
 if __name__ == "__main__":

@@ -2,13 +2,11 @@
 
 import pathlib
 
-from airhockey.envs import specs
-from airhockey.envs.compiling import compiler
-from airhockey.envs.kernel import chain
+from airhockey.envs.compiled import chain_sources, compiler
 
 _FOLDER = pathlib.Path(__file__).parent
 
-_SOURCES = [*_FOLDER.rglob("*.py"), pathlib.Path(specs.__file__), pathlib.Path(chain.__file__)]
+_SOURCES = [*_FOLDER.rglob("*.py"), *chain_sources]
 
 compiled = compiler(_FOLDER, _SOURCES, error_model="numpy")
 """Compile a function of an agent: it may allocate and return arrays. A division by zero is infinite, as in NumPy."""

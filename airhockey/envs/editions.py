@@ -66,14 +66,19 @@ class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     angle: Range | None = None
     yaw_rate: Range | None = None
 
+    @property
+    def area(self) -> float:
+        """Size of the region, in [m²]."""
+        return (self.x[1] - self.x[0]) * (self.y[1] - self.y[0])
+
 
 class EnvironmentRules(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What an environment consists of."""
+    """What an environment consists of: its arms, its task (a page of `airhockey.envs.tasks`) and the task's starts."""
 
     robot: str
     robots: int
     kind: str
-    start: str
+    start: tuple[str, ...]
     opponent: str | None = None
 
 
@@ -120,6 +125,10 @@ class Edition(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         if name not in self.environments:
             raise unknown(f"environment of edition {self.edition}", name, self.environments)
         return self.environments[name]
+
+    def starts_of(self, name: str) -> tuple[Start, ...]:
+        """The areas in which the puck of an environment starts."""
+        return tuple(self.starts[start] for start in self.environment(name).start)
 
     @property
     def deployability_limits(self) -> Range:

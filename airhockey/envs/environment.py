@@ -11,21 +11,19 @@ from airhockey.envs.constraints import constraint_slices
 from airhockey.envs.disturbances import Disturbances, load_disturbances
 from airhockey.envs.editions import ROBOTS, Edition, edition
 from airhockey.envs.info import make_env_info
-from airhockey.envs.kernel import referee
-from airhockey.envs.kernel.control_step import SUCCESS
+from airhockey.envs.kernel.memory import pack, view
 from airhockey.envs.kernel.opponent import ORDER as OPPONENT_ORDER
 from airhockey.envs.perception import Perception
 from airhockey.envs.plant_mismatch import PlantMismatch
 from airhockey.envs.simulation import Simulation
 from airhockey.envs.specs import CONTROL_PERIOD, SUBSTEPS, TABLE
-from airhockey.envs.starts import draw_start
+from airhockey.envs.tasks import task, verdicts
+from airhockey.envs.tasks.game import AWAY_SERVES, HOME_SERVES, Game, new_game
 from airhockey.errors import ActionError, ConfigurationError
 
 Array = NDArray[np.float64]
 Seed = int | np.random.SeedSequence | None
 Order = int | None
-
-_KINDS = {"hit": referee.HIT, "defend": referee.DEFEND, "prepare": referee.PREPARE, "game": referee.GAME}
 
 
 class Environment:
@@ -55,6 +53,9 @@ class Environment:
         dt: Length of a control step, in [s].
         n_agents: Number of robots in the scene.
         n_players: Number of robots that take actions.
+        task: The task's page: its referee, start and reward (`airhockey.envs.tasks`).
+        game: What the referee remembers of a game: score, faults, sides and timer.
+        verdict: The referee's, of the latest step (`airhockey.envs.tasks.verdicts`).
         succeeded: Whether the task would count as a success if it ended after the latest step.
     """
 
@@ -74,27 +75,27 @@ class Environment:
         self.name = name
         self.disturbances = load_disturbances(disturbances)
         self.n_agents = rules.robots
-        self.n_players = 2 if rules.kind == "game" else 1
-        self.horizon = self.edition.horizon.game if rules.kind == "game" else self.edition.horizon.task
+        self.task = task(rules.kind)
+        self.n_players = self.task.players
+        self.horizon = self.edition.horizon.game if self._is_game else self.edition.horizon.task
         given = interpolation_order
         orders = given if isinstance(given, tuple) else (given,) * self.n_players
         if len(orders) != self.n_players:
             raise ConfigurationError(f"{name} has {self.n_players} player(s), but got interpolation orders {orders}")
         self.formats = [ActionFormat(order, robot.n_joints) for order in orders]
-        self._kind, self._start = _KINDS[rules.kind], rules.start
+        self._starts = self.edition.starts_of(name)
         codes = [form.code for form in self.formats] + [OPPONENT_ORDER] * (self.n_agents - self.n_players)
         self.simulation = Simulation(
             robot,
             rules.robots,
-            _referee_rules(self.edition),
-            self._kind,
             np.array(codes, dtype=np.int64),
             rules.opponent == "figure_of_eight",
             visual,
         )
-        self.env_info = make_env_info(name, self.simulation, self.formats, self.edition, self.horizon)
+        self.env_info = make_env_info(name, self.simulation, self.edition, self.horizon)
         self.constraint_slices = constraint_slices(self.simulation.arm)
-        self._game = self.simulation.game
+        self._referee = pack(_referee_rules(self.edition), new_game())
+        self.game: Game = view(self._referee, Game)
         rows = max([form.rows for form in self.formats] + [2] * (self.n_agents - self.n_players))
         self._action = np.zeros((self.n_agents, rows, robot.n_joints))
         self._slots = [self._action[r, : form.rows].reshape(form.shape) for r, form in enumerate(self.formats)]
@@ -126,12 +127,16 @@ class Environment:
     @property
     def score(self) -> list[int]:
         """Points of player 1 and player 2 in a game."""
-        return [int(points) for points in self._game.score]
+        return [int(points) for points in self.game.score]
 
     @property
     def faults(self) -> list[int]:
         """Faults of player 1 and player 2 in a game."""
-        return [int(count) for count in self._game.faults]
+        return [int(count) for count in self.game.faults]
+
+    @property
+    def _is_game(self) -> bool:
+        return self.n_players == 2
 
     def reset(
         self, seed: Seed = None, state: Array | None = None, start_random: np.random.RandomState | None = None
@@ -149,8 +154,8 @@ class Environment:
         """
         if seed is not None:
             self._seed_streams(seed)
-        elif self._kind == referee.GAME:
-            self._game.side[0] = 0
+        elif self._is_game:
+            self.game.side[0] = 0
         if start_random is not None:
             self._start_random = start_random
         self._mismatch.apply(self.disturbances.mismatch, self._plant_random)
@@ -161,7 +166,7 @@ class Environment:
             self._restore(np.asarray(state, dtype=np.float64))
         for perception, random in zip(self._perceptions, self._perception_randoms, strict=True):
             perception.reset(random)
-        self.step_count, self.verdict, self.succeeded = 0, referee.GOING_ON, False
+        self.step_count, self.verdict, self.succeeded = 0, verdicts.GOING_ON, False
         return self._observe()
 
     def step(self, action: Any) -> tuple[Array, float, bool, dict[str, Any]]:
@@ -181,16 +186,17 @@ class Environment:
         if self.disturbances.torque > 0.0:
             shape = (SUBSTEPS, *self._no_noise.shape[1:])
             noise = self._plant_random.standard_normal(shape) * self._torque_deviation
-        verdict = self.simulation.step(self._action, noise, self.step_count)
-        self.verdict, self.succeeded = verdict & ~SUCCESS, verdict >= SUCCESS
-        return self._observe(), 0.0, self.verdict != referee.GOING_ON, self._info()
+        self.simulation.step(self._action, noise, self.step_count)
+        verdict = self.task.judge(self._referee, self.simulation.flat)
+        self.verdict, self.succeeded = verdict & ~verdicts.SUCCESS, verdict >= verdicts.SUCCESS
+        return self._observe(), 0.0, self.verdict != verdicts.GOING_ON, self._info()
 
     def new_game(self) -> None:
         """Score and faults to zero, and a new draw of the side that serves first."""
-        game = self._game
-        game.score[:], game.faults[:], game.side[:], game.timer[0] = 0, 0, (0, 1), 0.0
-        if self._kind == referee.GAME:
-            game.side[1] = self._start_random.choice([1, -1])
+        for kept, new in zip(self.game, new_game(), strict=True):
+            kept[:] = new
+        if self._is_game:
+            self.game.serve[0] = self._start_random.choice([HOME_SERVES, AWAY_SERVES])
 
     def _seed_streams(self, seed: int | np.random.SeedSequence) -> None:
         """One random stream per owner: the start, the plant, each player's perception."""
@@ -205,9 +211,9 @@ class Environment:
         self.new_game()
 
     def _draw_puck(self) -> tuple[Array, Array]:
-        position, velocity = draw_start(self._start, self.edition.starts, self._start_random)
-        if self._kind == referee.GAME:
-            position[0] *= self._game.side[1]
+        position, velocity = self.task.draw_start(self._starts, self._start_random)
+        if self._is_game:
+            position[0] *= self.game.serve[0]
         return position, velocity
 
     def _restore(self, state: Array) -> None:
@@ -271,8 +277,8 @@ def _child(sequence: np.random.SeedSequence, index: int) -> np.random.SeedSequen
     return np.random.SeedSequence(sequence.entropy, spawn_key=(*sequence.spawn_key, index))
 
 
-def _referee_rules(rules: Edition) -> referee.Rules:
-    return referee.Rules(
+def _referee_rules(rules: Edition) -> verdicts.Rules:
+    return verdicts.Rules(
         half_length=TABLE.length / 2,
         half_width=TABLE.width / 2,
         goal_half_width=TABLE.goal_width / 2,

@@ -23,6 +23,7 @@ except ImportError as error:
 
 from airhockey.envs.actions import ActionFormat
 from airhockey.envs.environment import Environment, Order
+from airhockey.envs.tasks.game import points_reward
 
 Array = NDArray[np.float64]
 ID = "airhockey/tournament-v0"
@@ -92,8 +93,7 @@ class TournamentEnv(pettingzoo.ParallelEnv[str, Array, Array]):
         constraints = [
             {name: values.copy() for name, values in by_name.items()} for by_name in info["constraints_value"]
         ]
-        points = [after - before for after, before in zip(env.score, self._score, strict=True)]
-        self._score, self._step = env.score, self._step + 1
+        before, self._score, self._step = self._score, env.score, self._step + 1
         if over:
             observation = env.reset()
         ended = self._step >= self._steps
@@ -103,7 +103,7 @@ class TournamentEnv(pettingzoo.ParallelEnv[str, Array, Array]):
             }
             for k, player in enumerate(PLAYERS)
         }  # fmt: skip
-        rewards = {"home": float(points[0] - points[1]), "away": float(points[1] - points[0])}
+        rewards = dict(zip(PLAYERS, points_reward(before, self._score), strict=True))
         if ended:
             self.agents = []
         return self._split(observation), rewards, dict.fromkeys(PLAYERS, False), dict.fromkeys(PLAYERS, ended), infos

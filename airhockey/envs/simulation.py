@@ -1,7 +1,7 @@
 """The simulation under the environment: one scene with its controllers, reset and advanced by control steps.
 
-It knows nothing of tasks beyond handing the referee's rules to compiled code, and nothing of noise beyond adding the torques
-it is given. MuJoCo's objects live as long as it does: compiled code knows only their addresses.
+It knows nothing of tasks, and nothing of noise beyond adding the torques it is given. MuJoCo's objects live as long as it
+does: compiled code knows only their addresses.
 """
 
 from typing import Any
@@ -12,30 +12,27 @@ from numpy.typing import NDArray
 
 from airhockey.envs import scene
 from airhockey.envs.kernel.arm import Arm, arm_from_model
-from airhockey.envs.kernel.control_step import BAD_ACTION, Task, control_step
-from airhockey.envs.kernel.controller import Controller, filter_velocity
+from airhockey.envs.kernel.control_step import BAD_ACTION, DONE, Players, control_step
+from airhockey.envs.kernel.controller import Controller, filter_velocity, new_controller
 from airhockey.envs.kernel.engine import last_warnings
 from airhockey.envs.kernel.kinematics import WorkSpace, link_rotations, work_space
 from airhockey.envs.kernel.memory import pack, view
 from airhockey.envs.kernel.observation import Readings, read, readings_of, readings_size
 from airhockey.envs.kernel.opponent import Opponent, reset_opponent
-from airhockey.envs.kernel.plant import Geometry, Plant
-from airhockey.envs.kernel.referee import Game, Rules
+from airhockey.envs.kernel.plant import Addresses, Geometry, Plant, addresses_of
 from airhockey.envs.kernel.universal_joint import clip_angle, desired_angles, rod_axes
-from airhockey.envs.specs import SUBSTEPS, RobotSpec
+from airhockey.envs.specs import RobotSpec
 from airhockey.errors import ActionError, SimulationError
 
 Array = NDArray[np.float64]
 
 
 class Simulation:
-    """A scene with its controllers and its referee.
+    """A scene with its controllers.
 
     Args:
         robot: Which arm plays.
         n_robots: 1 or 2.
-        rules: Thresholds of the referee.
-        kind: What is judged: a task or a game (`kernel.referee`).
         orders: Interpolation order of each robot, as compiled code wants it. Shape (n_robots,).
         moving_opponent: Robot 2 follows the figure of eight.
         visual: Draw the arms' links.
@@ -44,7 +41,6 @@ class Simulation:
         model, data: MuJoCo's. Changing them changes the simulation.
         robot_model, robot_data: The arm alone, nominal, as controller and agents know it.
         arm: The same as arrays.
-        game: Score, faults and timer; compiled code and Python share its arrays.
         flat: What the latest reset or step left, a fresh array each time; `readings` divides it.
     """
 
@@ -52,8 +48,6 @@ class Simulation:
         self,
         robot: RobotSpec,
         n_robots: int,
-        rules: Rules,
-        kind: int,
         orders: NDArray[np.int64],
         moving_opponent: bool = False,
         visual: bool = False,
@@ -67,24 +61,20 @@ class Simulation:
         n = robot.n_joints
         self._n_constraints = 4 * n + (7 if self.arm.universal_joint else 5)
         self._size = readings_size(n_robots, n, self._n_constraints)
-        geometry = self._geometry()
+        addresses, geometry = addresses_of(self.model, self.data), self._geometry()
         self._memory = pack(
+            addresses,
             geometry,
             self.arm,
-            _new_controller(n_robots, n),
+            new_controller(n_robots, n),
             work_space(n),
             Opponent(np.zeros(1), np.zeros(n), np.zeros(3)),
-            rules,
-            Game(np.zeros(2, np.int64), np.zeros(2, np.int64), np.array([0, 1]), np.zeros(1)),
-            Task(kind, moving_opponent, self._n_constraints, orders),
+            Players(moving_opponent, self._n_constraints, orders),
         )
         self._controller: Controller = view(self._memory, Controller)
         self._work: WorkSpace = view(self._memory, WorkSpace)
         self._opponent: Opponent = view(self._memory, Opponent)
-        self.game: Game = view(self._memory, Game)
-        data = self.data
-        self._arrays = (data.ctrl, data.qpos, data.qvel, data.xpos, data.warning.number)
-        self._plant = Plant(ctrl=data.ctrl, qpos=data.qpos, qvel=data.qvel, xpos=data.xpos, **geometry._asdict())
+        self._plant = self._make_plant(addresses, geometry)
         self._start = np.tile(np.array(robot.start), (n_robots, 1))
         self._striker_start = [self._level_striker(row) for row in self._start] if self.arm.universal_joint else []
         self.reset(np.zeros(3), np.zeros(3))
@@ -131,8 +121,8 @@ class Simulation:
         read(self._plant, self.arm, controller, self._work, self.readings)
         last_warnings()
 
-    def step(self, action: Array, noise: Array, step: int) -> int:
-        """Advance by one control step and return the referee's verdict, plus `SUCCESS`; `flat` is then new.
+    def step(self, action: Array, noise: Array, step: int) -> None:
+        """Advance by one control step; `flat` is then new.
 
         Args:
             action: Shape (robots, rows, n).
@@ -144,12 +134,11 @@ class Simulation:
             SimulationError: The engine warned.
         """
         before, self.flat = self.flat, np.empty(self._size)
-        verdict: int = control_step(self._memory, *self._arrays, action, noise, self.flat)
-        if verdict == BAD_ACTION:
+        code: int = control_step(self._memory, action, noise, self.flat)
+        if code == BAD_ACTION:
             self.flat = before
-        if verdict < 0:
-            self._complain(verdict, action, step)
-        return verdict
+        if code != DONE:
+            self._complain(code, action, step)
 
     def _complain(self, code: int, action: Array, step: int) -> None:
         if code == BAD_ACTION:
@@ -169,15 +158,25 @@ class Simulation:
         model, robot = self.model, self.robot
         bases = robot.base_positions[: self.n_robots]
         tips = [model.body(f"{robot.prefix}_{r + 1}/{robot.end_effector}").id for r in range(self.n_robots)]
+        counts = self.data.warning.number
         return Geometry(
-            model=model._address,
-            data=self.data._address,
             tips=np.array(tips, dtype=np.int64),
             sides=np.array([1.0, -1.0][: self.n_robots]),
             base_x=np.array([base[0] for base in bases]),
             base_z=bases[0][2],
             stride=robot.n_joints + (2 if self.arm.universal_joint else 0),
+            n_motors=model.nu,
+            n_joints=model.nv,
+            n_bodies=model.nbody,
+            n_warnings=counts.size,
+            warning_stride=counts.strides[0] // counts.itemsize,
         )
+
+    def _make_plant(self, addresses: Addresses, geometry: Geometry) -> Plant:
+        """The plant with Python's views of MuJoCo's arrays."""
+        data, known = self.data, addresses._asdict() | geometry._asdict()
+        arrays = {"ctrl": data.ctrl, "qpos": data.qpos, "qvel": data.qvel, "xpos": data.xpos}
+        return Plant(**arrays, **{name: known[name] for name in Plant._fields if name not in arrays})
 
     def _level_striker(self, joint_position: Array) -> tuple[float, float]:
         """Angles of the universal joint that level the mallet, in [rad]."""
@@ -186,21 +185,6 @@ class Simulation:
         rod_axes(rotations, rod)
         first, second = desired_angles(rod)
         return clip_angle(first), clip_angle(second)
-
-
-def _new_controller(robots: int, n: int) -> Controller:
-    return Controller(
-        command=np.zeros((robots, 3, n)),
-        clipped=np.zeros((robots, n)),
-        velocity=np.zeros((robots, n)),
-        striker_average=np.zeros((robots, 2)),
-        striker_seen=np.zeros(2),
-        set_points=np.zeros((robots, SUBSTEPS, 3, n)),
-        rotations=np.zeros((n, 3, 3)),
-        forces=np.zeros((n, 6)),
-        torque=np.zeros(n),
-        rod=np.zeros((2, 3)),
-    )
 
 
 def _warning_names(counts: Any) -> list[str]:

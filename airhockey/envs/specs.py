@@ -22,6 +22,12 @@ SUBSTEPS = 20
 """Simulation steps in one control step (50 Hz)."""
 CONTROL_PERIOD = 0.02
 """Length of one control step, in [s]."""
+X, Y, YAW, X_VELOCITY, Y_VELOCITY, YAW_RATE = range(6)
+"""Where the puck's state stands in an observation, in [m, m, rad] and [m/s, m/s, rad/s]."""
+JOINTS = 6
+"""Where the joints' positions begin in an observation; their velocities come next, then the opponent's rod tip."""
+POSITION, VELOCITY, ACCELERATION = range(3)
+"""Rows of an action, of a command and of a set-point, in [rad], [rad/s] and [rad/s²]."""
 SOFT_LIMIT = 0.95
 """Share of a joint's position or velocity limit beyond which the constraints count a violation."""
 
@@ -168,22 +174,21 @@ JOINT_VELOCITY_FILTER = 0.274
 """Share of the newest joint velocity in the exponential filter that controller and observations see."""
 
 
-def _planar_link(
-    length: float,
-    mass: float,
-    inertia: Vector,
-    position_limit: float,
-    velocity_limit: float,
-    torque_limit: float,
-    gains: tuple[float, float],
-    offset: Vector,
-) -> Link:
+Body = tuple[float, Vector, tuple[float, float, float, float, float, float]]
+"""Mass, centre of mass, inertia; see `Link`."""
+Gains = tuple[float, float]
+"""Stiffness and viscosity."""
+
+
+def _planar_link(offset: Vector, body: Body, limits: Vector, gains: Gains) -> Link:
+    """A link of the planar arm. `limits`: [rad], [rad/s] and [N·m]."""
+    position_limit, velocity_limit, torque_limit = limits
     return Link(
         position=offset,
         quaternion=(1.0, 0.0, 0.0, 0.0),
-        mass=mass,
-        center_of_mass=(length, 0.0, 0.0),
-        inertia=(*inertia, 0.0, 0.0, 0.0),
+        mass=body[0],
+        center_of_mass=body[1],
+        inertia=body[2],
         position_limit=position_limit,
         velocity_limit=velocity_limit,
         acceleration_limit=4.0 * velocity_limit,
@@ -193,23 +198,19 @@ def _planar_link(
     )
 
 
-_THIN = (0.0335, 0.0335, 0.003)
+_ROD = (2.0, (0.2, 0.0, 0.0), (0.0335, 0.0335, 0.003, 0.0, 0.0, 0.0))
 PLANAR = RobotSpec(
     prefix="planar_robot",
     link_prefix="body",
     links=(
         _planar_link(
-            0.25,
-            3.0,
-            (0.064375, 0.064375, 0.00375),
-            2.9670597283903604,
-            math.pi / 2,
-            100.0,
-            (960.0, 60.0),
             (0, 0, 0.25),
+            (3.0, (0.25, 0.0, 0.0), (0.064375, 0.064375, 0.00375, 0.0, 0.0, 0.0)),
+            (2.9670597283903604, math.pi / 2, 100.0),
+            (960.0, 60.0),
         ),
-        _planar_link(0.2, 2.0, _THIN, 1.8, math.pi / 2, 50.0, (480.0, 20.0), (0.55, 0, 0)),
-        _planar_link(0.2, 2.0, _THIN, 2.0943951023931953, 2 * math.pi / 3, 30.0, (240.0, 4.0), (0.44, 0, 0)),
+        _planar_link((0.55, 0, 0), _ROD, (1.8, math.pi / 2, 50.0), (480.0, 20.0)),
+        _planar_link((0.44, 0, 0), _ROD, (2.0943951023931953, 2 * math.pi / 3, 30.0), (240.0, 4.0)),
     ),
     tip=(
         FixedBody("body_hand", (0.44, 0.0, 0.0), 0.1, (0.0008, 0.0023, 0.0023)),
@@ -223,24 +224,21 @@ PLANAR = RobotSpec(
 
 
 def _iiwa_link(
-    position: Vector,
-    quaternion: Quaternion,
-    mass: float,
-    center_of_mass: Vector,
-    inertia: tuple[float, float, float, float, float, float],
+    pose: tuple[Vector, Quaternion],
+    body: Body,
     friction: tuple[float, float],
-    limits: tuple[float, float, float],
-    gains: tuple[float, float],
+    limits: Vector,
+    gains: Gains,
     armature: float = 0.0,
 ) -> Link:
     """A link of the iiwa. `friction`: damping and dry friction; `limits`: [rad], [°/s] and [N·m]."""
     position_limit, velocity_limit, torque_limit = limits
     return Link(
-        position=position,
-        quaternion=quaternion,
-        mass=mass,
-        center_of_mass=center_of_mass,
-        inertia=inertia,
+        position=pose[0],
+        quaternion=pose[1],
+        mass=body[0],
+        center_of_mass=body[1],
+        inertia=body[2],
         position_limit=position_limit,
         velocity_limit=math.radians(velocity_limit),
         acceleration_limit=math.radians(10.0 * velocity_limit),
@@ -261,71 +259,78 @@ IIWA = RobotSpec(
     link_prefix="link",
     links=(
         _iiwa_link(
-            (0, 0, 0.1575),
-            _UPRIGHT,
-            8.240527,
-            (4.007709e-06, -0.033936, 0.122467),
-            (0.021981, 0.022182, 0.008234, -2.897243e-07, 6.3165236e-07, 0.003285),
+            ((0, 0, 0.1575), _UPRIGHT),
+            (
+                8.240527,
+                (4.007709e-06, -0.033936, 0.122467),
+                (0.021981, 0.022182, 0.008234, -2.897243e-07, 6.3165236e-07, 0.003285),
+            ),
             (0.33032, 0.384477),
             (2.96706, 85.0, 320.0),
             (1500.0, 60.0),
         ),
         _iiwa_link(
-            (0, 0, 0.2025),
-            _TO_Y,
-            6.357896,
-            (0.003402, 0.034792, 0.046725),
-            (0.015565, 0.005180, 0.015484, -4.147301e-06, 1.192255e-05, 0.002538),
+            ((0, 0, 0.2025), _TO_Y),
+            (
+                6.357896,
+                (0.003402, 0.034792, 0.046725),
+                (0.015565, 0.005180, 0.015484, -4.147301e-06, 1.192255e-05, 0.002538),
+            ),
             (0.21216, 0.496333),
             (2.0944, 85.0, 320.0),
             (1500.0, 80.0),
         ),
         _iiwa_link(
-            (0, 0.2045, 0),
-            _TO_Y,
-            4.042756,
-            (-0.001452, 0.031526, 0.133584),
-            (0.010914, 0.010381, 0.003139, -3.540575e-06, -9.059062e-06, -0.002128),
+            ((0, 0.2045, 0), _TO_Y),
+            (
+                4.042756,
+                (-0.001452, 0.031526, 0.133584),
+                (0.010914, 0.010381, 0.003139, -3.540575e-06, -9.059062e-06, -0.002128),
+            ),
             (0.1, 0.173951),
             (2.96706, 100.0, 176.0),
             (1200.0, 60.0),
         ),
         _iiwa_link(
-            (0, 0, 0.2155),
-            _ABOUT_X,
-            3.642249,
-            (-0.002527, 0.053508, 0.037205),
-            (0.007536, 0.002538, 0.007206, -5.707028e-06, 2.781894e-06, 0.001256),
+            ((0, 0, 0.2155), _ABOUT_X),
+            (
+                3.642249,
+                (-0.002527, 0.053508, 0.037205),
+                (0.007536, 0.002538, 0.007206, -5.707028e-06, 2.781894e-06, 0.001256),
+            ),
             (0.219041, 0.3751),
             (2.0944, 75.0, 176.0),
             (1200.0, 30.0),
         ),
         _iiwa_link(
-            (0, 0.1845, 0),
-            _TO_Y,
-            2.580896,
-            (0.001855, 0.024573, 0.080131),
-            (0.005201, 0.004488, 0.002242, 1.089316e-07, 9.035623e-07, -0.001613),
+            ((0, 0.1845, 0), _TO_Y),
+            (
+                2.580896,
+                (0.001855, 0.024573, 0.080131),
+                (0.005201, 0.004488, 0.002242, 1.089316e-07, 9.035623e-07, -0.001613),
+            ),
             (0.185923, 0.481099),
             (2.96706, 130.0, 110.0),
             (1000.0, 10.0),
         ),
         _iiwa_link(
-            (0, 0, 0.2155),
-            _ABOUT_X,
-            2.760564,
-            (-0.001739, -0.001973, -0.002502),
-            (0.002534, 0.001821, 0.002393, -1.311766e-06, 9.508242e-07, 0.000134),
+            ((0, 0, 0.2155), _ABOUT_X),
+            (
+                2.760564,
+                (-0.001739, -0.001973, -0.002502),
+                (0.002534, 0.001821, 0.002393, -1.311766e-06, 9.508242e-07, 0.000134),
+            ),
             (0.1, 0.196149),
             (2.0944, 135.0, 40.0),
             (1000.0, 1.0),
         ),
         _iiwa_link(
-            (0, 0.081, 0),
-            _TO_Y,
-            1.285417,
-            (0.000735, 0.000387, 0.026460),
-            (0.000151, 0.000150, 0.000187, -7.223100e-08, 2.038333e-06, -3.396830e-07),
+            ((0, 0.081, 0), _TO_Y),
+            (
+                1.285417,
+                (0.000735, 0.000387, 0.026460),
+                (0.000151, 0.000150, 0.000187, -7.223100e-08, 2.038333e-06, -3.396830e-07),
+            ),
             (0.1, 0.299238),
             (3.05433, 135.0, 40.0),
             (500.0, 0.5),

@@ -8,9 +8,9 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from airhockey.evaluator.engines.engine import Engine, InProcess, Processes, engine_for
-    from airhockey.evaluator.evaluation import begin, evaluate, play_episode, resume
-    from airhockey.evaluator.results import report
+    from airhockey.evaluator.engines.engine import Engine, InProcess
+    from airhockey.evaluator.engines.processes import Processes, engine_for
+    from airhockey.evaluator.evaluation import begin, evaluate, play_episode, report, resume
     from airhockey.evaluator.runs.records import EpisodeRecord, Options, RunResult, TaskResult
 
 _HOMES = {
@@ -18,14 +18,14 @@ _HOMES = {
     "EpisodeRecord": "runs.records",
     "InProcess": "engines.engine",
     "Options": "runs.records",
-    "Processes": "engines.engine",
+    "Processes": "engines.processes",
     "RunResult": "runs.records",
     "TaskResult": "runs.records",
     "begin": "evaluation",
-    "engine_for": "engines.engine",
+    "engine_for": "engines.processes",
     "evaluate": "evaluation",
     "play_episode": "evaluation",
-    "report": "results",
+    "report": "evaluation",
     "resume": "evaluation",
 }
 

@@ -1,27 +1,23 @@
 """A match: some games of one pair of players."""
 
 import contextlib
-import datetime
-from collections.abc import Callable, Mapping
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import msgspec
 
-from airhockey import envs
-from airhockey.envs.disturbances import Disturbances, load_disturbances
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.checks import check_agent, check_game_options, check_seed, check_versions
+from airhockey.evaluator.checks import check_agent, check_game_options, check_seed
 from airhockey.evaluator.engines.engine import Engine, InProcess, JobFailed
 from airhockey.evaluator.judging.games import tally
-from airhockey.evaluator.play.game_player import Game, GamePlayer, live_file, lost
+from airhockey.evaluator.play.game import Game, GamePlayer, live_file, lost
 from airhockey.evaluator.play.seeding import game_seed
 from airhockey.evaluator.play.watchdog import culprit
-from airhockey.evaluator.runs.game_folder import GameFolder, check_repeated, in_order
-from airhockey.evaluator.runs.game_records import Event, GameJob, GameOptions, GameRecord, Side, Winner
+from airhockey.evaluator.runs.game_folder import GameFolder
+from airhockey.evaluator.runs.game_records import Event, GameJob, GameOptions, GameRecord, Side, Winner, in_order
+from airhockey.evaluator.runs.manifest import MATCH
 from airhockey.evaluator.runs.records import Order
 
-MATCH = "match.json"
 OnGame = Callable[[GameRecord], None]
 
 
@@ -45,16 +41,6 @@ class MatchOptions(msgspec.Struct, frozen=True, kw_only=True):
     game: GameOptions = GameOptions()
     home_order: Order = "agent"
     away_order: Order = "agent"
-
-
-class MatchManifest(msgspec.Struct, frozen=True, kw_only=True):
-    """`match.json`."""
-
-    options: MatchOptions
-    profile: Disturbances
-    versions: dict[str, str]
-    created: str
-    format: int = 1
 
 
 class GameResult(msgspec.Struct, frozen=True, kw_only=True):
@@ -89,46 +75,24 @@ class MatchResult(msgspec.Struct, frozen=True, kw_only=True):
     losses: int
 
 
-def begin_match(options: MatchOptions, path: Path) -> GameFolder[MatchManifest]:
-    """Begin a match; nothing is written when anything about it is wrong.
+class MatchFolder(GameFolder[MatchOptions]):
+    """The folder of a match, opened for writing."""
 
-    Raises:
-        ConfigurationError: An option has no meaning, or the folder holds something or cannot be written.
-    """
-    check_game_options(options.game)
-    check_seed(options.seed)
-    if options.games < 1:
-        raise ConfigurationError(f"the number of games must be positive, not {options.games}")
-    for agent in (options.home, options.away):
-        check_agent(agent, ("tournament",))
-    manifest = MatchManifest(
-        options=options,
-        profile=load_disturbances(options.game.disturbances),
-        versions=envs.versions(),
-        created=datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
-    )
-    return GameFolder.create(path, MATCH, manifest)
+    name, options_type = MATCH, MatchOptions
+
+    @classmethod
+    def check(cls, options: MatchOptions) -> None:
+        """Find the mistakes in a match's options; raises `ConfigurationError`."""
+        check_game_options(options.game)
+        check_seed(options.seed)
+        if options.games < 1:
+            raise ConfigurationError(f"the number of games must be positive, not {options.games}")
+        for agent in (options.home, options.away):
+            check_agent(agent, ("tournament",))
 
 
-def resume_match(path: Path, asked: Mapping[str, Any] | None = None) -> GameFolder[MatchManifest]:
-    """Take up a match that was interrupted.
-
-    Args:
-        path: Its folder.
-        asked: Fields of `MatchOptions` and `GameOptions` that the user repeated; they must be the match's.
-
-    Raises:
-        ConfigurationError: There is none, it is another than the one asked for, or the software has changed.
-    """
-    folder = GameFolder.open(path, MATCH, MatchManifest)
-    manifest = folder.manifest
-    try:
-        check_repeated(path, asked or {}, manifest.options, manifest.profile)
-        check_versions(manifest.versions, path)
-    except ConfigurationError:
-        folder.close()
-        raise
-    return folder
+begin_match = MatchFolder.begin
+resume_match = MatchFolder.resume
 
 
 def match_jobs(options: MatchOptions) -> list[GameJob]:
@@ -143,9 +107,7 @@ def match_jobs(options: MatchOptions) -> list[GameJob]:
     return jobs
 
 
-def play_match(
-    folder: GameFolder[MatchManifest], engine: Engine | None = None, on_game: OnGame | None = None
-) -> MatchResult:
+def play_match(folder: MatchFolder, engine: Engine | None = None, on_game: OnGame | None = None) -> MatchResult:
     """Play the games that are not played yet, and report on all of them.
 
     Args:
@@ -153,24 +115,19 @@ def play_match(
         engine: Where the games are played; here, one after the other, if not given.
         on_game: Called with every record as it comes.
     """
-    manifest = folder.manifest
+    options = folder.manifest.options
     with folder:
-        play_games(folder, match_jobs(manifest.options), manifest.options.game, manifest.profile, engine, on_game)
-        result = match_result(manifest.options, folder.records)
+        play_games(folder, match_jobs(options), engine, on_game)
+        result = match_result(options, folder.records)
         folder.keep_result(result)
     return result
 
 
 def play_games(
-    folder: GameFolder[Any],
-    jobs: list[GameJob],
-    options: GameOptions,
-    profile: Disturbances,
-    engine: Engine | None,
-    on_game: OnGame | None,
+    folder: GameFolder[Any], jobs: list[GameJob], engine: Engine | None = None, on_game: OnGame | None = None
 ) -> None:
     """Play those of the jobs that the folder does not hold yet, and keep each as it ends."""
-    player = GamePlayer(options, profile, folder.live.resolve())
+    player = GamePlayer(folder.manifest.options.game, folder.manifest.profile, folder.live.resolve())
     missing = [job for job in jobs if job.key not in folder.done]
     results = (engine or InProcess()).run(player, missing)
     with contextlib.closing(results):

@@ -1,37 +1,14 @@
-"""Who plays whom: the entries of a tournament and its schedule."""
+"""Who plays whom: a tournament's options and its schedule."""
 
-from collections.abc import Iterable, Mapping
-from pathlib import Path
+from collections.abc import Mapping
 
 import msgspec
 
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.checks import check_agent, check_game_options, check_seed
+from airhockey.evaluator.entries import NAME_LETTERS, Entry, with_replacements
 from airhockey.evaluator.play.seeding import game_seed
 from airhockey.evaluator.runs.game_records import GameJob, GameOptions
-from airhockey.evaluator.runs.records import Order
-
-_NAME_LETTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._")
-
-
-class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One competitor.
-
-    Attributes:
-        name: Letters, digits, "." and "_"; unique in the tournament.
-        agent: A name of the registry, or the absolute path of a submission.
-        second_agent: Plays in phase 2 instead, if given.
-        interpolation_order: See `records.Order`.
-    """
-
-    name: str
-    agent: str
-    second_agent: str | None = None
-    interpolation_order: Order = "agent"
-
-    def agent_in(self, phase: int) -> str:
-        """Who plays for this entry in a phase, 1 or 2."""
-        return self.second_agent if phase == 2 and self.second_agent is not None else self.agent
 
 
 class TournamentOptions(msgspec.Struct, frozen=True, kw_only=True):
@@ -82,7 +59,7 @@ def check_tournament(options: TournamentOptions) -> None:
         raise ConfigurationError(f"a tournament takes at least two entries; there is only {len(options.entries)}")
     seen: set[str] = set()
     for entry in options.entries:
-        if not entry.name or not set(entry.name) <= _NAME_LETTERS:
+        if not entry.name or not set(entry.name) <= NAME_LETTERS:
             raise ConfigurationError(f"entry name {entry.name!r} may hold only letters, digits, '.' and '_'")
         if entry.name in seen:
             raise ConfigurationError(f"there are two entries named {entry.name!r}; give one another name: NAME=AGENT")
@@ -91,28 +68,6 @@ def check_tournament(options: TournamentOptions) -> None:
             raise ConfigurationError(f"entry {entry.name!r} has a replacement for phase 2, but there is one phase")
         for phase in range(1, options.phases + 1):
             check_agent(entry.agent_in(phase), ("tournament",))
-
-
-def entry_of(text: str) -> Entry:
-    """An entry as typed: "AGENT", or "NAME=AGENT"."""
-    name, equals, agent = text.partition("=")
-    if not equals or not set(name) <= _NAME_LETTERS:  # or the sign is part of a path
-        name, agent = "", text
-    return Entry(name=name or _default_name(agent), agent=agent)
-
-
-def with_replacements(entries: Iterable[Entry], replacements: Mapping[str, str]) -> tuple[Entry, ...]:
-    """The entries, those named in `replacements` with another agent for phase 2."""
-    entries = tuple(entries)
-    for name in replacements:
-        if name not in {entry.name for entry in entries}:
-            raise ConfigurationError(
-                f"cannot replace {name!r}: the entries are {', '.join(entry.name for entry in entries)}"
-            )
-    return tuple(
-        msgspec.structs.replace(entry, second_agent=replacements.get(entry.name, entry.second_agent))
-        for entry in entries
-    )
 
 
 def extended(
@@ -136,10 +91,6 @@ def extended(
     fresh = tuple(entry for entry in added if entry.name not in known)
     entries = with_replacements((*options.entries, *fresh), replacements)
     return msgspec.structs.replace(options, entries=entries, phases=phases or options.phases)
-
-
-def _default_name(agent: str) -> str:
-    return "".join(letter if letter in _NAME_LETTERS else "_" for letter in Path(agent).stem)
 
 
 def _rounds(entries: tuple[Entry, ...]) -> list[tuple[Entry, Entry]]:

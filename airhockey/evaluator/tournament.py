@@ -1,53 +1,35 @@
 """A tournament: every entry plays every other one at home and away, in one phase or two."""
 
-import datetime
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
-from airhockey import envs
-from airhockey.envs.disturbances import Disturbances, load_disturbances
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.checks import check_versions
 from airhockey.evaluator.engines.engine import Engine
+from airhockey.evaluator.entries import Entry
 from airhockey.evaluator.judging.standings import Standings, standings, write_standings
 from airhockey.evaluator.match import play_games
-from airhockey.evaluator.runs.game_folder import GameFolder, check_repeated, read_game_manifest, read_games
+from airhockey.evaluator.runs.game_folder import GameFolder
 from airhockey.evaluator.runs.game_records import GameRecord
-from airhockey.evaluator.schedule import Entry, TournamentOptions, check_tournament, extended, schedule
-
-TOURNAMENT = "tournament.json"
-
-
-class TournamentManifest(msgspec.Struct, frozen=True, kw_only=True):
-    """`tournament.json`."""
-
-    options: TournamentOptions
-    profile: Disturbances
-    versions: dict[str, str]
-    created: str
-    format: int = 1
-
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.evaluator.runs.manifest import TOURNAMENT, Manifest
+from airhockey.evaluator.schedule import TournamentOptions, check_tournament, extended, schedule
 
 OnStandings = Callable[[GameRecord, Standings], None]
 
 
-def begin_tournament(options: TournamentOptions, path: Path) -> GameFolder[TournamentManifest]:
-    """Begin a tournament; nothing is written when anything about it is wrong.
+class TournamentFolder(GameFolder[TournamentOptions]):
+    """The folder of a tournament, opened for writing."""
 
-    Raises:
-        ConfigurationError: An option has no meaning, or the folder holds something or cannot be written.
-    """
-    check_tournament(options)
-    manifest = TournamentManifest(
-        options=options,
-        profile=load_disturbances(options.game.disturbances),
-        versions=envs.versions(),
-        created=datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
-    )
-    return GameFolder.create(path, TOURNAMENT, manifest)
+    name, options_type = TOURNAMENT, TournamentOptions
+
+    @classmethod
+    def check(cls, options: TournamentOptions) -> None:
+        """See `check_tournament`."""
+        check_tournament(options)
+
+
+begin_tournament = TournamentFolder.begin
 
 
 def resume_tournament(
@@ -56,7 +38,7 @@ def resume_tournament(
     asked: Mapping[str, Any] | None = None,
     phases: int | None = None,
     replacements: Mapping[str, str] | None = None,
-) -> GameFolder[TournamentManifest]:
+) -> TournamentFolder:
     """Take up a tournament that was interrupted, or extend it: only the missing games will be played.
 
     Args:
@@ -69,24 +51,18 @@ def resume_tournament(
     Raises:
         ConfigurationError: There is none, an option is not valid, or the software has changed.
     """
-    folder = GameFolder.open(path, TOURNAMENT, TournamentManifest)
-    manifest = folder.manifest
-    try:
-        check_versions(manifest.versions, path)
-        check_repeated(path, asked or {}, manifest.options, manifest.profile)
-        options = extended(manifest.options, tuple(added), phases, replacements or {})
-        if options != manifest.options:
+    folder = TournamentFolder.resume(path, asked)
+    with folder.released_on_error():
+        options = extended(folder.manifest.options, tuple(added), phases, replacements or {})
+        if options != folder.manifest.options:
             check_tournament(options)
             _check_played(folder.records, options)
-            folder.change(msgspec.structs.replace(manifest, options=options))
-    except ConfigurationError:
-        folder.close()
-        raise
+            folder.change(options)
     return folder
 
 
 def play_tournament(
-    folder: GameFolder[TournamentManifest], engine: Engine | None = None, on_standings: OnStandings | None = None
+    folder: TournamentFolder, engine: Engine | None = None, on_standings: OnStandings | None = None
 ) -> Standings:
     """Play the missing games; the standings are on the disk after every one.
 
@@ -95,9 +71,9 @@ def play_tournament(
         engine: Where the games are played; here, one after the other, if not given.
         on_standings: Called with every record as it comes, and the standings after it.
     """
-    manifest = folder.manifest
-    jobs = schedule(manifest.options)
-    names = [entry.name for entry in manifest.options.entries]
+    options = folder.manifest.options
+    jobs = schedule(options)
+    names = [entry.name for entry in options.entries]
 
     def on_game(record: GameRecord) -> None:
         table = write_standings(folder.path, names, jobs, folder.records)
@@ -105,15 +81,15 @@ def play_tournament(
             on_standings(record, table)
 
     with folder:
-        play_games(folder, jobs, manifest.options.game, manifest.profile, engine, on_game)
+        play_games(folder, jobs, engine, on_game)
         return write_standings(folder.path, names, jobs, folder.records)
 
 
-def read_standings(path: Path) -> tuple[TournamentManifest, Standings]:
+def read_standings(path: Path) -> tuple[Manifest[TournamentOptions], Standings]:
     """The standings of a tournament from its folder, finished or not, without playing."""
-    manifest = read_game_manifest(path, TOURNAMENT, TournamentManifest)
+    manifest = TournamentFolder.read(path)
     names = [entry.name for entry in manifest.options.entries]
-    return manifest, standings(names, schedule(manifest.options), read_games(path))
+    return manifest, standings(names, schedule(manifest.options), read_journal(path, GameRecord).records)
 
 
 def _check_played(records: Iterable[GameRecord], options: TournamentOptions) -> None:

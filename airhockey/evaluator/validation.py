@@ -1,5 +1,6 @@
 """Is a submission fit to be handed in? Load it apart from everything, play a little, and say what to mend, and how."""
 
+import functools
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,20 +10,17 @@ import msgspec
 import numpy as np
 
 from airhockey import envs
-from airhockey.agents.hold import standing_still
 from airhockey.agents.packaging.metadata import METADATA, Metadata, interpolation_order, read_metadata
 from airhockey.agents.packaging.packing import contents
-from airhockey.agents.submission import CONFIG, submission_config, submission_folder, wanted_order
+from airhockey.agents.submission import CONFIG, submission_config, submission_folder
 from airhockey.errors import ActionError, AirHockeyError, ConfigurationError
-from airhockey.evaluator.isolation.build import build_agent
-from airhockey.evaluator.isolation.failures import AgentDied, AgentTimeout
-from airhockey.evaluator.isolation.handle import AgentHandle
+from airhockey.evaluator.isolation.failures import AgentDied, AgentTimeout, describe
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.modes import Mode
-from airhockey.evaluator.play.episode import agent_failures, describe
-
-STEP_LIMIT = 0.02
-"""Beyond this the previous command is held in a game, and penalty points are due, in [s]."""
+from airhockey.evaluator.play.build_seats import Entrant, build_seats
+from airhockey.evaluator.play.game import TIME_LIMIT
+from airhockey.evaluator.play.rollout import Rollout
+from airhockey.evaluator.play.seat import Care
 
 
 class Problem(msgspec.Struct, frozen=True):
@@ -111,37 +109,43 @@ def validate(path: Path, mode: Mode, limits: Limits, steps: int = 50) -> Verdict
 
 def try_out(agent: str, task: str, mode: Mode, limits: Limits, steps: int) -> Trial | Problem:
     """Play a few steps of one task, alone or against somebody who stands still."""
-    order = wanted_order(Path(agent))
-    game = task == "tournament"
-    env = envs.make(task, (order, 3) if game else order)
-    step, player, began, longest_cpu = 0, None, time.perf_counter(), 0.0
-    try:
-        player = build_agent(agent, env, mode=mode, limits=limits, order=order)
-        start, times = time.perf_counter() - began, list[float]()
-        clock = player.clock("cpu") if isinstance(player, AgentHandle) else time.thread_time
-        player.episode_start()
-        observation = env.reset(seed=0)
-        half = observation.size // 2
-        for _ in range(steps):
-            step += 1
-            began, used = time.perf_counter(), clock()
-            action = player.draw_action(observation[:half] if game else observation)
-            times.append(time.perf_counter() - began)
-            longest_cpu = max(longest_cpu, clock() - used if step > 1 else 0.0)
-            other = standing_still(np.array(env.simulation.robot.start), 3)
-            observation, _, over, _ = env.step((action, other) if game else action)
-            if over:
-                observation = env.reset()
-        player.stop()
-    except agent_failures() as failure:
-        printed = getattr(player, "printed", "")
-        where = f"{task}, step {step}" if step else f"{task}, loading"
-        return Problem(where, describe(failure), _remedy(failure, printed, limits))
-    finally:
-        if isinstance(player, AgentHandle):
-            player.close()
+    entrants = [Entrant(agent, isolate=mode, limits=limits), Entrant("hold")][: 2 if task == "tournament" else 1]
+    began = time.perf_counter()
+    env, seats = build_seats(functools.partial(envs.make, task), entrants, Care())
+    start, seat, rollout = time.perf_counter() - began, seats[0], Rollout(env, seats, seed=0)
+    if seat.agent is None or seat.error is not None:
+        return _problem(task, rollout, limits)
+    times, cpu_times = list[float](), list[float]()
+    wall, cpu = seat.clock, seat.agent.clock("cpu")
+
+    def both() -> float:
+        """The wall clock; it notes the other one, before an action and after it."""
+        cpu_times.append(cpu())
+        return wall()
+
+    seat.clock = both
+    rollout.begin()
+    while len(times) < steps and rollout.step():
+        times.append(seat.seconds)
+        if rollout.over:
+            rollout.begin()
+    seat.stop()
+    if seat.error is not None:
+        return _problem(task, rollout, limits)
     rest = times[1:] or times
+    longest_cpu = max(
+        (after - before for before, after in zip(cpu_times[2::2], cpu_times[3::2], strict=False)), default=0.0
+    )
     return Trial(task, len(times), start, float(np.median(rest)), max(rest), times[0], longest_cpu)
+
+
+def _problem(task: str, rollout: Rollout, limits: Limits) -> Problem:
+    """What the agent did wrong."""
+    seat = rollout.seats[0]
+    assert seat.error is not None
+    printed = "" if seat.agent is None else seat.agent.printed
+    where = f"{task}, step {rollout.steps}" if rollout.steps else f"{task}, loading"
+    return Problem(where, describe(seat.error), _remedy(seat.error, printed, limits))
 
 
 def _paper(folder: Path) -> tuple[Metadata | None, list[Problem]]:
@@ -182,10 +186,10 @@ def _contradictions(metadata: Metadata, config: dict[str, Any]) -> Iterator[Prob
 
 def _slow(trial: Trial) -> Iterator[Problem]:
     slow = max(trial.median, trial.longest_cpu)
-    if slow > STEP_LIMIT:
+    if slow > TIME_LIMIT:
         yield Problem(
             trial.env,
-            f"draw_action took {slow * 1e3:.1f} ms; a control step has {STEP_LIMIT * 1e3:.0f} ms",
+            f"draw_action took {slow * 1e3:.1f} ms; a control step has {TIME_LIMIT * 1e3:.0f} ms",
             "compute less per step, or spread it over several; compile and load in build_agent",
         )
 

@@ -13,16 +13,15 @@ if TYPE_CHECKING:
 
 def add_games(library: Library) -> None:
     """Add the games of a folder, if it is one of games."""
-    from airhockey.evaluator.match import MATCH
-    from airhockey.evaluator.runs.game_folder import read_games
-    from airhockey.evaluator.runs.game_records import file_name
-    from airhockey.evaluator.tournament import TOURNAMENT
+    from airhockey.evaluator.runs.game_records import GameRecord, file_name
+    from airhockey.evaluator.runs.journal import read_journal
+    from airhockey.evaluator.runs.manifest import MATCH, TOURNAMENT
 
     path = library.path
     films = {film.stem: film for film in sorted((path / "films").glob("*.h5"), key=_natural)}
     if not films and not any((path / name).exists() for name in (MATCH, TOURNAMENT)):
         return
-    records = {record.job.key: record for record in read_games(path)}
+    records = {record.job.key: record for record in read_journal(path, GameRecord).records}
     for key, record in records.items():
         film = films.pop(file_name(key), None)
         if film is not None:

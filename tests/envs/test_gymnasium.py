@@ -15,7 +15,7 @@ import airhockey.envs.gymnasium
 from airhockey import envs
 from airhockey.agents.hold import standing_still
 from airhockey.envs.pettingzoo import ID
-from airhockey.envs.rewards import reward_for
+from airhockey.envs.tasks import reward_for
 from airhockey.errors import ConfigurationError
 
 TASKS = airhockey.envs.gymnasium.TASKS

@@ -116,7 +116,7 @@ def test_a_reset_forgets_everything(name):
     """Whatever the controllers, the opponent or the engine remembered: here, nonsense."""
     fresh, poisoned = envs.make(name), envs.make(name)
     simulation = poisoned.simulation
-    for part in (simulation._controller, simulation._opponent, simulation._work, simulation.game):
+    for part in (simulation._controller, simulation._opponent, simulation._work, poisoned.game):
         for memory in part:
             memory[...] = 123
     simulation.data.qpos[:] = simulation.data.qvel[:] = simulation.data.qacc_warmstart[:] = 9.0

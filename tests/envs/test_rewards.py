@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from airhockey import envs
-from airhockey.envs.rewards import HitReward, TaskReward, formulas, reward_for
-from airhockey.envs.rewards.hit import met
-from airhockey.envs.rewards.situation import Situation, situation
+from airhockey.envs.tasks import TaskReward, hit, reward_for
+from airhockey.envs.tasks.hit import HitReward, met
+from airhockey.envs.tasks.positions import PuckAndMallet, puck_and_mallet
+from airhockey.envs.tasks.reward import normalized_violated_constraints
 from airhockey.errors import ConfigurationError
 
 POINTS = {"joint_pos_constr": 2.0, "joint_vel_constr": 1.0, "ee_constr": 3.0, "link_constr": 3.0}
@@ -49,20 +50,20 @@ def test_violations_are_weighted_by_penalty_points_and_averaged_over_the_violate
         "ee_constr": np.array([0.06, -3.0]),  # 0.06, times 3
         "link_constr": np.array([-0.5]),
     }
-    assert formulas.normalized_violated_constraints(values, POINTS) == pytest.approx((0.6 + 0.18) / 9.0)
+    assert normalized_violated_constraints(values, POINTS) == pytest.approx((0.6 + 0.18) / 9.0)
     planar = {name: values[name] for name in ("joint_pos_constr", "joint_vel_constr", "ee_constr")}
-    assert formulas.normalized_violated_constraints(planar, POINTS) == pytest.approx(0.78 / 6.0)
+    assert normalized_violated_constraints(planar, POINTS) == pytest.approx(0.78 / 6.0)
 
 
 def test_the_thesiss_own_example_of_a_slack():
     """4.1.3: a value of 0.3 where the limit is 0.25 is a σ of 0.05; alone it weighs 3 of 9 points."""
     values = {name: np.array([-1.0]) for name in POINTS} | {"link_constr": np.array([0.3 - 0.25])}
-    assert formulas.normalized_violated_constraints(values, POINTS) == pytest.approx(0.05 * 3.0 / 9.0)
+    assert normalized_violated_constraints(values, POINTS) == pytest.approx(0.05 * 3.0 / 9.0)
 
 
 def test_approach_is_the_distance_in_half_diagonals():
     diagonal = math.sqrt(1.948**2 + 1.038**2)
-    got = formulas.approach(np.array([-0.8, 0.1]), np.array([-0.5, 0.5]))  # 0.5 m apart
+    got = hit.approach(np.array([-0.8, 0.1]), np.array([-0.5, 0.5]))  # 0.5 m apart
     assert got == pytest.approx(-0.5 / (0.5 * diagonal))
 
 
@@ -76,7 +77,7 @@ def test_approach_is_the_distance_in_half_diagonals():
     ],
 )
 def test_a_strike_counts_its_direction_and_speed(velocity, expected):
-    assert formulas.strike(np.array(velocity), max_speed=20.0) == pytest.approx(expected)
+    assert hit.strike(np.array(velocity), max_speed=20.0) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(
@@ -84,21 +85,21 @@ def test_a_strike_counts_its_direction_and_speed(velocity, expected):
     [((0.5, 0.0), True), ((-0.2, 0.0), False), ((0.974, 0.12), True), ((0.974, 0.13), False), ((0.0, 0.0), True)],
 )
 def test_the_triangle_of_goal_and_previous_puck(puck, inside):
-    assert formulas.inside_triangle(np.zeros(2), np.array(puck)) is inside
+    assert hit.inside_triangle(np.zeros(2), np.array(puck)) is inside
 
 
 def test_the_angle_outside_is_measured_from_the_nearer_border():
     post = math.atan2(0.125, 0.974)
-    assert formulas.angle_outside(np.zeros(2), np.array([0.0, 1.0])) == pytest.approx(math.pi / 2 - post)
-    assert formulas.angle_outside(np.zeros(2), np.array([0.0, -1.0])) == pytest.approx(math.pi / 2 - post)
-    assert formulas.angle_outside(np.zeros(2), np.array([-1.0, 0.0])) == pytest.approx(math.pi - post)
+    assert hit.angle_outside(np.zeros(2), np.array([0.0, 1.0])) == pytest.approx(math.pi / 2 - post)
+    assert hit.angle_outside(np.zeros(2), np.array([0.0, -1.0])) == pytest.approx(math.pi / 2 - post)
+    assert hit.angle_outside(np.zeros(2), np.array([-1.0, 0.0])) == pytest.approx(math.pi - post)
 
 
 @pytest.mark.parametrize("name", ["3dof-hit", "7dof-hit"])
 def test_the_mallet_is_where_mujoco_has_it(name):
     env = envs.make(name)
     env.reset(seed=3)
-    seen = situation(env, env.base_observation)
+    seen = puck_and_mallet(env, env.base_observation)
     body = env.simulation.data.body(f"{env.simulation.robot.prefix}_1/{env.simulation.robot.end_effector}")
     np.testing.assert_allclose(seen.mallet, body.xpos[:2], atol=1e-9)
 
@@ -111,8 +112,8 @@ def test_the_mallets_velocity_is_the_change_of_its_position():
     state[9:12] = velocity
     later = state.copy()
     later[6:9] += step * velocity
-    change = (situation(env, later).mallet - situation(env, state).mallet) / step
-    np.testing.assert_allclose(situation(env, state).mallet_velocity, change, atol=1e-6)
+    change = (puck_and_mallet(env, later).mallet - puck_and_mallet(env, state).mallet) / step
+    np.testing.assert_allclose(puck_and_mallet(env, state).mallet_velocity, change, atol=1e-6)
 
 
 def test_a_puck_on_its_way_into_the_goal():
@@ -124,7 +125,7 @@ def test_a_puck_on_its_way_into_the_goal():
     assert names.count("hit") == 1 and names[0] == "approach"
     assert names.index("hit") == pytest.approx((0.26 - 0.0798) / 0.02, abs=2)  # the gap at 1 m/s
     first = terms[0]["approach"]
-    assert first == pytest.approx(-(0.86 - 0.62) / (0.5 * formulas.TABLE_DIAGONAL), abs=1e-3)
+    assert first == pytest.approx(-(0.86 - 0.62) / (0.5 * hit.TABLE_DIAGONAL), abs=1e-3)
     after = terms[names.index("hit") + 2]
     assert after["inside"] == pytest.approx(10.4, abs=0.3)  # it bounced straight back at less than half its speed
     assert all(step["constraints"] == 0.0 for step in terms)
@@ -161,8 +162,8 @@ def test_a_new_episode_begins_without_a_hit():
 
 
 def test_a_bounce_off_the_rim_is_no_hit():
-    before = Situation(np.array([0.3, 0.48]), np.array([0.0, 1.0]), np.array([-0.8, 0.0]), np.zeros(2))
-    after = Situation(np.array([0.3, 0.48]), np.array([0.0, -0.8]), np.array([-0.8, 0.0]), np.zeros(2))
+    before = PuckAndMallet(np.array([0.3, 0.48]), np.array([0.0, 1.0]), np.array([-0.8, 0.0]), np.zeros(2))
+    after = PuckAndMallet(np.array([0.3, 0.48]), np.array([0.0, -0.8]), np.array([-0.8, 0.0]), np.zeros(2))
     assert not met(before, after)
 
 

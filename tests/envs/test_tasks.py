@@ -5,13 +5,13 @@ import pytest
 from arms import ALL, standing, with_puck
 
 from airhockey import envs
-from airhockey.envs.kernel.memory import view
-from airhockey.envs.kernel.referee import Rules
+from airhockey.envs.compiled import view
+from airhockey.envs.tasks.verdicts import Rules
 
 
 @ALL
 def test_the_compiled_rules_are_the_challenges(name):
-    rules = view(envs.make(name).simulation._memory, Rules)
+    rules = view(envs.make(name)._referee, Rules)
     lengths = rules[:3]
     assert lengths == pytest.approx((0.974, 0.519, 0.125), abs=0)
     assert rules[3:] == pytest.approx((100.0, -0.8, -0.2, 0.39105, 0.1, 0.1, 0.01, 15.0, 3, 0.15, 0.025), abs=1e-12)

@@ -9,7 +9,8 @@ import pytest
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.engines import cluster
 from airhockey.evaluator.engines.cluster import Cluster, engine_of
-from airhockey.evaluator.engines.engine import InProcess, JobFailed, Processes
+from airhockey.evaluator.engines.engine import InProcess, JobFailed
+from airhockey.evaluator.engines.processes import Processes
 
 
 def results(function: Any, jobs: Any) -> dict[Any, Any]:

@@ -5,7 +5,8 @@ import engine_functions
 import pytest
 
 from airhockey.errors import AirHockeyError
-from airhockey.evaluator.engines.engine import InProcess, JobFailed, Processes, engine_for
+from airhockey.evaluator.engines.engine import InProcess, JobFailed
+from airhockey.evaluator.engines.processes import Processes, engine_for
 
 
 def results(engine: Any, function: Any, jobs: Any) -> dict[Any, Any]:

@@ -158,7 +158,7 @@ def test_what_holds_something_is_shown_beside_what_does_not(results: Results, tm
 
 
 def test_names_come_without_other_peoples_paths() -> None:
-    assert short_name("baseline") == "baseline"
+    assert short_name("planner") == "planner"
     assert short_name("/home/somebody/agents/mine") == "mine"
     assert short_name("/home/somebody/mine/air_hockey_agent") == "mine"
     assert short_name("/home/somebody/mine-0.1.0.zip") == "mine-0.1.0"

@@ -4,9 +4,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from airhockey.evaluator import Options, begin, evaluate
+from airhockey.evaluator.entries import Entry
 from airhockey.evaluator.match import MatchOptions, begin_match, play_match
 from airhockey.evaluator.runs.game_records import GameOptions
-from airhockey.evaluator.schedule import Entry, TournamentOptions
+from airhockey.evaluator.schedule import TournamentOptions
 from airhockey.evaluator.tournament import begin_tournament, play_tournament
 from submissions import make_submission
 

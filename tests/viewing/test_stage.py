@@ -103,13 +103,13 @@ def test_the_path_of_the_puck_begins_at_it_and_stays_on_the_table() -> None:
 @pytest.mark.parametrize("shape", [(7,), (2, 7), (3, 7), (20, 3, 7)])
 def test_a_target_is_drawn_whatever_the_order_of_actions(shape: tuple[int, ...]) -> None:
     stage = Stage("tournament")
-    marks = mallet_target(stage, 0, object(), np.broadcast_to(np.array(stage.robot.start), shape))
+    marks = mallet_target(stage, 0, None, np.broadcast_to(np.array(stage.robot.start), shape))
     assert np.abs(marks[0].start[:2]).max() < 1.5
 
     class Planner:
         target = (-0.5, 0.25)
 
-    marks = mallet_target(stage, 1, Planner(), np.zeros(shape))
+    marks = mallet_target(stage, 1, Planner.target, np.zeros(shape))
     assert marks[0].start[:2] == (0.5, -0.25), "player 2 looks from the other side"
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
-from airhockey.envs.kernel.chain import SerialChain, forward_kinematics, point_jacobian
+from airhockey.envs.compiled import SerialChain, forward_kinematics, point_jacobian
 from airhockey.envs.specs import IIWA, PLANAR, RobotSpec
 
 Array = NDArray[np.float64]
@@ -21,7 +21,7 @@ ELBOW_LINK, WRIST_LINK = 4, 7
 
 
 class Chain(NamedTuple):
-    """Links that turn about their own z axes. See `airhockey.envs.kernel.chain.SerialChain`."""
+    """Links that turn about their own z axes. See `airhockey.envs.compiled.SerialChain`."""
 
     offset: Array
     rotation: Array

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import PuckMotion, puck_motion, transition
 from airhockey.agents.small_matrices import add_congruence, factor, solve_backward, solve_forward
-from airhockey.envs.kernel.memory import pack
+from airhockey.envs.compiled import pack
 
 Array = NDArray[np.float64]
 

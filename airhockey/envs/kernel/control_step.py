@@ -1,4 +1,4 @@
-"""One control step, whole: 20 simulation steps under the joint controllers, then observation, constraints and verdict."""
+"""One control step, whole: 20 simulation steps under the joint controllers, then observation and constraints."""
 
 import math
 from typing import Any, NamedTuple
@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.envs.kernel import referee
 from airhockey.envs.kernel.arm import Arm
 from airhockey.envs.kernel.compiling import compiled
 from airhockey.envs.kernel.controller import Controller, filter_velocity, set_motors
@@ -15,56 +14,38 @@ from airhockey.envs.kernel.interpolation import interpolate
 from airhockey.envs.kernel.kinematics import WorkSpace
 from airhockey.envs.kernel.observation import compiled_readings_of, read
 from airhockey.envs.kernel.opponent import Opponent, figure_of_eight
-from airhockey.envs.kernel.plant import Plant
-from airhockey.envs.kernel.referee import Game, Rules
+from airhockey.envs.kernel.plant import Plant, plant_of, warned
 from airhockey.envs.specs import SUBSTEPS
 
 Array = NDArray[np.float64]
 
-SUCCESS = 256
-"""Added to the verdict when the episode would count as a success if it ended here."""
-BAD_ACTION, BAD_TORQUE, ENGINE_WARNED = -1, -2, -3
-"""In place of a verdict: the action is not finite (nothing was simulated); it led to a set-point or a torque that is not;
-MuJoCo warned."""
+DONE, BAD_ACTION, BAD_TORQUE, ENGINE_WARNED = 0, -1, -2, -3
+"""All is well; the action is not finite (nothing was simulated); it led to a set-point or a torque that is not; MuJoCo warned."""
 
 
-class Task(NamedTuple):
-    """What is played: the referee's kind, whether robot 2 follows the figure of eight, constraints per robot, orders (R,)."""
+class Players(NamedTuple):
+    """How the robots are moved: whether robot 2 follows the figure of eight, constraints per robot, orders (R,)."""
 
-    kind: int
     moving_opponent: bool
     n_constraints: int
     orders: NDArray[np.int64]
 
 
 @compiled
-def control_step(
-    memory: Any,
-    ctrl: Array,
-    qpos: Array,
-    qvel: Array,
-    xpos: Array,
-    warnings: NDArray[np.int32],
-    action: Array,
-    noise: Array,
-    flat: Array,
-) -> int:
-    """Advance by one control step and return the referee's verdict, plus `SUCCESS`; or a negative error code.
+def control_step(memory: Any, action: Array, noise: Array, left: Array) -> int:
+    """Advance by one control step; `DONE`, or a negative error code.
 
     Args:
-        memory: The record with `Geometry`, `Arm`, `Controller`, `WorkSpace`, `Opponent`, `Rules`, `Game` and `Task`. Shape (1,).
-        ctrl, qpos, qvel, xpos, warnings: MuJoCo's arrays.
+        memory: The record with `Addresses`, `Geometry`, `Arm`, `Controller`, `WorkSpace`, `Opponent` and `Players`. Shape (1,).
         action: The players' actions, padded to the same number of rows. Shape (R, rows, n).
         noise: Torque added to each motor in each substep, in [N·m]; shape (20, R, n), or (0, R, n) for none.
-        flat: Written: see `observation.readings_of`.
+        left: Written: see `observation.readings_of`.
     """
     m = memory[0]
-    plant = Plant(m.model, m.data, ctrl, qpos, qvel, xpos, m.tips, m.sides, m.base_x, m.base_z, m.stride)
-    arm = _arm(m)
-    controller = _controller(m)
+    plant, arm, controller = plant_of(m), _arm(m), _controller(m)
     work = WorkSpace(m.positions, m.axes, m.jacobian, m.step, m.error)
     robots, n = controller.clipped.shape
-    readings = compiled_readings_of(flat, robots, n, m.n_constraints)
+    readings = compiled_readings_of(left, robots, n, m.n_constraints)
     for r in range(robots):
         if r == 1 and m.moving_opponent:
             figure_of_eight(arm, Opponent(m.phase, m.commanded, m.target), work, action[1])
@@ -76,11 +57,10 @@ def control_step(
             return BAD_TORQUE
     if not _simulate(plant, arm, controller, noise):
         return BAD_TORQUE
-    for k in range(warnings.shape[0]):
-        if warnings[k] != 0:
-            return ENGINE_WARNED
+    if warned(m):
+        return ENGINE_WARNED
     read(plant, arm, controller, work, readings)
-    return _verdict(_rules(m), m.kind, Game(m.score, m.faults, m.side, m.timer), readings.base[0])
+    return DONE
 
 
 @compiled
@@ -106,16 +86,6 @@ def _simulate(plant: Plant, arm: Arm, controller: Controller, noise: Array) -> b
         for r in range(robots):
             filter_velocity(plant.qvel, r * plant.stride, controller.velocity[r])
     return True
-
-
-@compiled
-def _verdict(rules: Rules, kind: int, game: Game, puck: Array) -> int:
-    if kind == referee.GAME:
-        return referee.judge_game(rules, game, puck)
-    success = SUCCESS if referee.succeeded(rules, kind, puck) else 0
-    if referee.off_table(rules, puck):
-        return referee.OFF_TABLE + success
-    return (referee.TASK_OVER if referee.task_over(rules, kind, puck) else referee.GOING_ON) + success
 
 
 @compiled
@@ -151,24 +121,4 @@ def _controller(m: Any) -> Controller:
         m.forces,
         m.torque,
         m.rod,
-    )
-
-
-@compiled
-def _rules(m: Any) -> Rules:
-    return Rules(
-        m.half_length,
-        m.half_width,
-        m.goal_half_width,
-        m.max_speed,
-        m.near_x,
-        m.far_x,
-        m.band_half_width,
-        m.slow,
-        m.standstill,
-        m.middle_line,
-        m.fault_time,
-        m.faults_per_point,
-        m.middle_zone,
-        m.stuck_speed,
     )

@@ -12,7 +12,7 @@ from airhockey.envs.kernel.dynamics import inverse_dynamics
 from airhockey.envs.kernel.kinematics import link_rotations
 from airhockey.envs.kernel.plant import Plant
 from airhockey.envs.kernel.universal_joint import clip_angle, desired_angles, rod_axes, striker_torque, unwrap
-from airhockey.envs.specs import JOINT_VELOCITY_FILTER, STRIKER, TIMESTEP
+from airhockey.envs.specs import ACCELERATION, JOINT_VELOCITY_FILTER, POSITION, STRIKER, SUBSTEPS, TIMESTEP, VELOCITY
 
 Array = NDArray[np.float64]
 
@@ -45,6 +45,22 @@ class Controller(NamedTuple):
     rod: Array
 
 
+def new_controller(robots: int, n: int) -> Controller:
+    """The memory of controllers of arms with n joints, all zero."""
+    return Controller(
+        command=np.zeros((robots, 3, n)),
+        clipped=np.zeros((robots, n)),
+        velocity=np.zeros((robots, n)),
+        striker_average=np.zeros((robots, 2)),
+        striker_seen=np.zeros(2),
+        set_points=np.zeros((robots, SUBSTEPS, 3, n)),
+        rotations=np.zeros((n, 3, 3)),
+        forces=np.zeros((n, 6)),
+        torque=np.zeros(n),
+        rod=np.zeros((2, 3)),
+    )
+
+
 @compiled
 def limit_set_point(arm: Arm, set_point: Array, clipped: Array) -> None:
     """Keep a set-point inside the position and velocity limits, approaching a position limit ever more slowly.
@@ -58,29 +74,25 @@ def limit_set_point(arm: Arm, set_point: Array, clipped: Array) -> None:
         p = clipped[i]
         slowest = min(max(-_LIMITER_GAIN * (p - arm.position_limit[0, i]), lowest), highest)
         fastest = min(max(-_LIMITER_GAIN * (p - arm.position_limit[1, i]), lowest), highest)
-        set_point[1, i] = min(max(set_point[1, i], slowest), fastest)
-        set_point[0, i] = min(max(set_point[0, i], p + slowest * TIMESTEP), p + fastest * TIMESTEP)
-        clipped[i] = set_point[0, i]
+        set_point[VELOCITY, i] = min(max(set_point[VELOCITY, i], slowest), fastest)
+        wish = set_point[POSITION, i]
+        set_point[POSITION, i] = min(max(wish, p + slowest * TIMESTEP), p + fastest * TIMESTEP)
+        clipped[i] = set_point[POSITION, i]
 
 
 @compiled
-def motor_torque(
-    arm: Arm, rotations: Array, set_point: Array, position: Array, velocity: Array, forces: Array, torque: Array
-) -> None:
-    """Write the feed-forward PD torque (thesis, equation 3.1), not yet clipped, into `torque`.
+def add_feedback(arm: Arm, set_point: Array, position: Array, velocity: Array, torque: Array) -> None:
+    """Add the PD controller's part to the feed-forward `torque` (thesis, equation 3.1), in [N·m]; nothing is clipped yet.
 
     Args:
-        rotations: Of the links at the measured position. Shape (n, 3, 3).
         set_point: Position, velocity, acceleration. Shape (3, n).
         position: Measured, in [rad]. Shape (n,).
         velocity: Filtered, in [rad/s]. Shape (n,).
-        forces: Work space. Shape (n, 6).
-        torque: Written, in [N·m]. Shape (n,).
+        torque: What the motion itself takes (`inverse_dynamics`). Shape (n,).
     """
-    inverse_dynamics(arm, rotations, velocity, set_point[2], forces, torque)
     for i in range(torque.shape[0]):
-        proportional = arm.stiffness[i] * (set_point[0, i] - position[i])
-        torque[i] = proportional + arm.viscosity[i] * (set_point[1, i] - velocity[i]) + torque[i]
+        proportional = arm.stiffness[i] * (set_point[POSITION, i] - position[i])
+        torque[i] = proportional + arm.viscosity[i] * (set_point[VELOCITY, i] - velocity[i]) + torque[i]
 
 
 @compiled
@@ -108,7 +120,9 @@ def set_motors(plant: Plant, arm: Arm, controller: Controller, k: int, r: int, n
     set_point, torque = controller.set_points[r, k], controller.torque
     limit_set_point(arm, set_point, controller.clipped[r])
     link_rotations(arm, position, controller.rotations)
-    motor_torque(arm, controller.rotations, set_point, position, controller.velocity[r], controller.forces, torque)
+    velocity = controller.velocity[r]
+    inverse_dynamics(arm, controller.rotations, velocity, set_point[ACCELERATION], controller.forces, torque)
+    add_feedback(arm, set_point, position, velocity, torque)
     for i in range(n):
         if noise.shape[0] > 0:
             torque[i] += noise[k, r, i]

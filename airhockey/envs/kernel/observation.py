@@ -13,6 +13,7 @@ from airhockey.envs.kernel.constraints import end_effector_constraints, joint_co
 from airhockey.envs.kernel.controller import Controller
 from airhockey.envs.kernel.kinematics import WorkSpace
 from airhockey.envs.kernel.plant import Plant
+from airhockey.envs.specs import JOINTS, X_VELOCITY, Y_VELOCITY, YAW, X, Y
 
 Array = NDArray[np.float64]
 
@@ -28,7 +29,7 @@ class Readings(NamedTuple):
 
 def readings_of(flat: Array, robots: int, n: int, n_constraints: int) -> Readings:
     """Divide a flat array (see `readings_size`) into its parts."""
-    width = 6 + 2 * n + (3 if robots == 2 else 0)
+    width = JOINTS + 2 * n + (3 if robots == 2 else 0)
     a = robots * width
     c = 2 * a + robots * n_constraints
     return Readings(
@@ -45,7 +46,7 @@ compiled_readings_of = compiled(readings_of)
 
 def readings_size(robots: int, n: int, n_constraints: int) -> int:
     """Length of the flat array."""
-    return robots * (2 * (6 + 2 * n + (3 if robots == 2 else 0)) + n_constraints + n)
+    return robots * (2 * (JOINTS + 2 * n + (3 if robots == 2 else 0)) + n_constraints + n)
 
 
 @compiled
@@ -65,16 +66,16 @@ def _read_world(plant: Plant, controller: Controller, r: int, base: Array) -> No
     n = controller.clipped.shape[1]
     first, start = plant.qpos.shape[0] - 3, r * plant.stride
     for i in range(3):
-        base[i] = plant.qpos[first + i]
-        base[3 + i] = plant.qvel[first + i]
-    base[2] = (base[2] + math.pi) % (2.0 * math.pi) - math.pi
+        base[X + i] = plant.qpos[first + i]
+        base[X_VELOCITY + i] = plant.qvel[first + i]
+    base[YAW] = (base[YAW] + math.pi) % (2.0 * math.pi) - math.pi
     for i in range(n):
-        base[6 + i] = plant.qpos[start + i]
-        base[6 + n + i] = controller.velocity[r, i]
+        base[JOINTS + i] = plant.qpos[start + i]
+        base[JOINTS + n + i] = controller.velocity[r, i]
     if plant.tips.shape[0] == 2:
         # The step's own kinematics placed the bodies: the rod tip is one substep old, as in the official package.
         for i in range(3):
-            base[6 + 2 * n + i] = plant.xpos[plant.tips[1 - r], i]
+            base[JOINTS + 2 * n + i] = plant.xpos[plant.tips[1 - r], i]
 
 
 @compiled
@@ -83,13 +84,13 @@ def _into_robot_frame(plant: Plant, r: int, n: int, base: Array, row: Array) -> 
     side = plant.sides[r]
     for i in range(row.shape[0]):
         row[i] = base[i]
-    row[0] = side * (base[0] - plant.base_x[r])
-    row[1] = side * base[1]
+    row[X] = side * (base[X] - plant.base_x[r])
+    row[Y] = side * base[Y]
     if side < 0.0:  # through the rotation matrix, so that yaw 0 is seen as +pi
-        row[2] = math.atan2(0.0 - math.sin(base[2]), -math.cos(base[2]))
-    row[3], row[4] = side * base[3], side * base[4]
+        row[YAW] = math.atan2(0.0 - math.sin(base[YAW]), -math.cos(base[YAW]))
+    row[X_VELOCITY], row[Y_VELOCITY] = side * base[X_VELOCITY], side * base[Y_VELOCITY]
     if plant.tips.shape[0] == 2:
-        k = 6 + 2 * n
+        k = JOINTS + 2 * n
         row[k] = side * (base[k] - plant.base_x[r])
         row[k + 1] = side * base[k + 1]
         row[k + 2] = base[k + 2] - plant.base_z
@@ -99,7 +100,7 @@ def _into_robot_frame(plant: Plant, r: int, n: int, base: Array, row: Array) -> 
 def _judge(arm: Arm, observation: Array, work: WorkSpace, values: Array) -> None:
     """Constraint values of one robot."""
     n = arm.mass.shape[0]
-    position, velocity = observation[6 : 6 + n], observation[6 + n : 6 + 2 * n]
+    position, velocity = observation[JOINTS : JOINTS + n], observation[JOINTS + n : JOINTS + 2 * n]
     joint_constraints(arm, position, velocity, values)
     forward_kinematics(arm, position, work.positions, work.axes)
     end_effector_constraints(work.positions[n], arm.desired_height, values[4 * n : 4 * n + 5])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from airhockey.envs.kernel.arm import Arm
 from airhockey.envs.kernel.compiling import compiled
 from airhockey.envs.kernel.kinematics import WorkSpace, inverse_kinematics
-from airhockey.envs.specs import CONTROL_PERIOD
+from airhockey.envs.specs import CONTROL_PERIOD, POSITION, VELOCITY
 
 Array = NDArray[np.float64]
 
@@ -47,8 +47,8 @@ def figure_of_eight(arm: Arm, opponent: Opponent, work: WorkSpace, action: Array
     opponent.target[2] = arm.desired_height
     n = opponent.commanded.shape[0]
     for i in range(n):
-        action[1, i] = opponent.commanded[i]
+        action[VELOCITY, i] = opponent.commanded[i]
     inverse_kinematics(arm, opponent.target, opponent.commanded, work)
     for i in range(n):
-        action[0, i] = opponent.commanded[i]
-        action[1, i] = (opponent.commanded[i] - action[1, i]) / CONTROL_PERIOD
+        action[POSITION, i] = opponent.commanded[i]
+        action[VELOCITY, i] = (opponent.commanded[i] - action[VELOCITY, i]) / CONTROL_PERIOD

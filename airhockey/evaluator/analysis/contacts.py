@@ -44,20 +44,19 @@ def contacts(before: Array, after: Array, mallet_before: Array, mallet_after: Ar
     return np.asarray((size > LEAST_IMPULSE) & reached & along)
 
 
-def last_of_each(touching: Mask, first_of_part: Mask) -> NDArray[np.int64]:
-    """The last steps of the hits: contacts with at most two steps between them are one hit.
+def hits(touching: Mask, first_of_part: Mask) -> NDArray[np.int64]:
+    """The first and last steps of the hits: contacts with at most two steps between them are one hit.
 
     Args:
         touching: Shape (steps,).
         first_of_part: Where an episode or a serve begins, which no hit lasts beyond. Shape (steps,).
 
     Returns:
-        Indices of steps. Shape (hits,).
+        Indices of steps. Shape (hits, 2).
     """
     steps = np.flatnonzero(touching)
-    if steps.size == 0:
-        return steps
     part = np.cumsum(first_of_part)[steps]
-    ends = np.ones(steps.size, dtype=bool)
-    ends[:-1] = (np.diff(steps) >= _PAUSE) | (np.diff(part) > 0)
-    return np.asarray(steps[ends])
+    between = (np.diff(steps) >= _PAUSE) | (np.diff(part) > 0)
+    begins, ends = np.ones(steps.size, dtype=bool), np.ones(steps.size, dtype=bool)
+    begins[1:] = ends[:-1] = between
+    return np.stack([steps[begins], steps[ends]], axis=1)

@@ -21,7 +21,8 @@ from typing import Any, TypeVar
 
 from airhockey import envs
 from airhockey.errors import AirHockeyError, ConfigurationError, MissingDependencyError
-from airhockey.evaluator.engines.engine import Engine, JobFailed, Processes, engine_for
+from airhockey.evaluator.engines.engine import Engine, JobFailed
+from airhockey.evaluator.engines.processes import Processes, engine_for
 from airhockey.evaluator.engines.workers import ONE_THREAD, close
 
 Job = TypeVar("Job")

@@ -77,7 +77,7 @@ class Worker:
         error, result = answer
         return error, result
 
-    def bury(self) -> str:
+    def reap(self) -> str:
         """Clean up after a dead worker and say how it died."""
         self.finish()
         self.kill()
@@ -104,7 +104,7 @@ def close(function: Any) -> None:
 
 
 def _work(pipe: Any, function: Callable[[Any], Any]) -> None:
-    """A worker's life: jobs in, results out, until the pipe or the parent is gone."""
+    """Main function of a worker: jobs in, results out, until the pipe or the parent is gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's business
     threading.Thread(target=_die_with_parent, daemon=True).start()
     with contextlib.suppress(EOFError, OSError):

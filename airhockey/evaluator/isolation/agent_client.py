@@ -37,19 +37,18 @@ class IsolatedAgent(AgentHandle):
 
     Args:
         launch: How its process is started.
-        job: What `airhockey.evaluator.isolation.build_local.build_here` needs.
+        job: What `airhockey.evaluator.isolation.build_local.build_from_names` needs.
         limits: What it may use, and how long anybody waits.
         seed: Of the generators that it may draw from while it is built.
 
     Attributes:
-        interpolation_order: What the agent wants.
-        phase: For logs.
-        next_action, preprocessors: Of the official interface; preprocessors are applied over there.
+        interpolation_order: What the agent wants. Its preprocessors are applied over there.
 
     Raises:
         AgentError: It could not be built.
     """
 
+    phase = "isolated"
     _process: subprocess.Popen[bytes]
     _memory: Memory
     _requests: int = -1
@@ -60,14 +59,12 @@ class IsolatedAgent(AgentHandle):
     def __init__(
         self, launch: Launch, job: dict[str, Any], limits: Limits, seed: np.random.SeedSequence | None = None
     ) -> None:
-        self.phase, self.next_action, self.preprocessors = "isolated", None, ()
-        self.interpolation_order: int | None = 3
         self._limits, self._launch = limits, launch
         self._seed: np.random.SeedSequence | None = None
         self._pid = 0
         self._start()
         try:
-            self._meet()
+            self._await_start()
             self._memory.write_text(
                 job | {"limits": asdict(limits), "user": launch.user, "counted": launch.counted, "seed": _words(seed)}
             )
@@ -93,7 +90,7 @@ class IsolatedAgent(AgentHandle):
         self._seed = None
         self._ask(channel.EPISODE, self._limits.patience)
 
-    def draw_action(self, observation: Array) -> Array:
+    def act(self, observation: Array) -> Array:
         """The next command, in any shape that the agent likes.
 
         Raises:
@@ -136,7 +133,7 @@ class IsolatedAgent(AgentHandle):
                 os.close(descriptor)
         self._requests = self._replies = -1
         self._output.close()
-        for folder in self._launch.rubbish:
+        for folder in self._launch.temporary_folders:
             shutil.rmtree(folder, ignore_errors=True)
 
     def __del__(self) -> None:
@@ -177,33 +174,33 @@ class IsolatedAgent(AgentHandle):
         self._poll.register(self._replies, select.POLLIN)
         self._poll.register(output, select.POLLIN)
 
-    def _meet(self) -> None:
-        """Wait until it runs; nothing of the agent is loaded yet, so its process is the only one in there."""
-        if self._hear(self._limits.start) != channel.HELLO:
-            raise self._obituary()
+    def _await_start(self) -> None:
+        """Wait for the process to run. Nothing of the agent is loaded yet, so its process is the only one in the sandbox."""
+        if self._receive(self._limits.start) != channel.HELLO:
+            raise self._exit_error()
         self._pid = self._process.pid if self._first is None else only_child(self._first)
         self._core = SharedCore(self._pid)
 
     def _ask(self, word: bytes, patience: float) -> bytes:
-        """Say a word and wait for the reply; whoever gives none is stopped."""
+        """Send a request and wait for the reply; an agent that gives none is stopped."""
         if self._requests < 0:
             raise AgentDied("its process has ended")
         try:
             os.write(self._requests, word)
         except BrokenPipeError:
-            raise self._obituary() from None
-        reply = self._hear(patience)
+            raise self._exit_error() from None
+        reply = self._receive(patience)
         if reply == channel.RAISED:
             raise AgentRaised(_clean(self._memory.read_text()))
         if not reply:
-            raise self._obituary()
+            raise self._exit_error()
         if reply not in (channel.DONE, channel.BAD_ACTION):
             self.close()
             raise AgentError("it wrote to the evaluator's pipe")
         return reply
 
-    def _hear(self, patience: float) -> bytes:
-        """A word of the agent's, or nothing where its process has ended."""
+    def _receive(self, patience: float) -> bytes:
+        """The agent's reply; empty where its process has ended."""
         deadline = time.monotonic() + patience
         while True:
             ready = dict(self._poll.poll(max(deadline - time.monotonic(), 0.0) * 1e3))
@@ -216,8 +213,8 @@ class IsolatedAgent(AgentHandle):
                 self._poll.unregister(self._output.descriptor)
         return os.read(self._replies, 1)
 
-    def _obituary(self) -> AgentDied:
-        """How it died, with its last words."""
+    def _exit_error(self) -> AgentDied:
+        """The error of a process that ended: how it did, and what it printed last."""
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(1.0)
         code = self._process.poll()

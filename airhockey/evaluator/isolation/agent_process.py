@@ -8,7 +8,6 @@ It limits itself and gives up what rights it has before it loads anything of the
 import contextlib
 import ctypes
 import os
-import random
 import signal
 import sys
 from typing import Any
@@ -23,7 +22,7 @@ _PR_SET_PDEATHSIG, _PR_SET_DUMPABLE = 1, 4
 
 
 def main() -> None:
-    """Serve until the host hangs up."""
+    """Serve until the evaluator hangs up."""
     requests, replies, descriptor = (int(argument) for argument in sys.argv[1:4])
     memory = Memory(descriptor)
     os.close(descriptor)
@@ -39,15 +38,16 @@ def main() -> None:
 
 
 class Server:
-    """Answers the host's words."""
+    """Answers the evaluator's requests."""
 
     def __init__(self, memory: Memory) -> None:
         self._memory = memory
         self._agent: Any = None
+        self._preprocessors: tuple[Any, ...] = ()
         self._size = 0
 
     def answer(self, word: bytes) -> bytes:
-        """Do what a word asks for; gives the word to reply."""
+        """Do what a request asks for; gives the reply."""
         try:
             if word == channel.ACT:
                 return self._act()
@@ -56,33 +56,32 @@ class Server:
             elif word == channel.EPISODE:
                 self._begin_episode(self._memory.read_text())
             elif word == channel.STOP:
-                getattr(self._agent, "stop", lambda: None)()
+                self._agent.stop()
         except BaseException as failure:
-            self._memory.write_text(_told(failure))
+            self._memory.write_text(_error_text(failure))
             return channel.RAISED
         return channel.DONE
 
     def _build(self, job: dict[str, Any]) -> None:
         """Give up every right, then load the agent."""
         restrict(job)
-        from airhockey.evaluator.isolation.build_local import build_here
+        from airhockey.evaluator.isolation.build_local import build_from_names
 
         seed(job["seed"])
-        self._agent, self._size = build_here(job)
-        self._preprocessors = tuple(getattr(self._agent, "preprocessors", ()))
-        order = getattr(self._agent, "interpolation_order", 3)
+        self._agent, self._size = build_from_names(job)
+        order = self._agent.interpolation_order
         self._memory.write_text({"interpolation_order": order if order is None else int(order)})
 
     def _begin_episode(self, job: dict[str, Any]) -> None:
         seed(job["seed"])
         self._agent.episode_start()
-        self._preprocessors = tuple(getattr(self._agent, "preprocessors", ()))
+        self._preprocessors = tuple(self._agent.preprocessors)
 
     def _act(self) -> bytes:
         observation: Any = self._memory.read_observation(self._size)
         for preprocessor in self._preprocessors:
             observation = preprocessor(observation)
-        action = self._agent.draw_action(observation)
+        action = self._agent.act(observation)
         try:
             values = np.asarray(action)
             problem = _problem(action, values)
@@ -96,7 +95,7 @@ class Server:
 
 
 def _problem(action: Any, values: Any) -> str | None:
-    """Why an action cannot even be shown to the host."""
+    """Why an action cannot even be shown to the evaluator."""
     if values.dtype.kind not in "fiu":
         return f"the action is of type {type(action).__name__} with dtype {values.dtype}; return a float array"
     if values.ndim > channel.MAX_DIMENSIONS or values.size > channel.MAX_ACTION:
@@ -104,8 +103,8 @@ def _problem(action: Any, values: Any) -> str | None:
     return None
 
 
-def _told(failure: BaseException) -> dict[str, str]:
-    from airhockey.evaluator.play.episode import describe
+def _error_text(failure: BaseException) -> dict[str, str]:
+    from airhockey.evaluator.isolation.failures import describe
 
     try:
         what = describe(failure)
@@ -115,24 +114,21 @@ def _told(failure: BaseException) -> dict[str, str]:
 
 
 def seed(words: list[int] | None) -> None:
-    """Seed the generators that an agent may draw from without asking, as `airhockey.evaluator.play.seeding` does."""
-    if words is None:
-        return
-    np.random.seed(np.array(words, dtype=np.uint32))
-    random.seed(words[0])
-    torch = sys.modules.get("torch")
-    if torch is not None:
-        torch.manual_seed(words[0])
+    """Seed the generators that an agent may draw from without asking."""
+    from airhockey.evaluator.play.seeding import seed_generators
+
+    if words is not None:
+        seed_generators(np.array(words, dtype=np.uint32))
 
 
 def restrict(job: dict[str, Any]) -> None:
-    """Die with the host, be the first to go when memory runs out, keep to the limits, and be nobody.
+    """Die with the evaluator, be the first to go when memory runs out, keep to the limits, and be nobody.
 
     Args:
         job: `limits`; `user`, a user's number to become or None; `counted`, whether processes are counted.
     """
     libc = ctypes.CDLL(None)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the host's business
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the evaluator's business
     with contextlib.suppress(OSError), open("/proc/self/oom_score_adj", "w") as score:
         score.write("1000")
     Limits(**job["limits"]).apply(count_processes=job["counted"])

@@ -1,13 +1,13 @@
 """One function that builds an agent as asked: in this process, in one of its own, in a sandbox, or behind a TCP port."""
 
-from collections.abc import Mapping
-from dataclasses import replace
+import copy
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from airhockey.agents.submission import is_submission, submission_folder
+from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.modes import REMOTE, Mode
 
@@ -19,44 +19,34 @@ def build_agent(
     *,
     mode: Mode = "none",
     limits: Limits | None = None,
-    patience: float | None = None,
-    order: int | None = 3,
     seed: np.random.SeedSequence | None = None,
-    env_info: Mapping[str, Any] | None = None,
     **kwargs: Any,
-) -> Any:
-    """Build an agent.
+) -> AgentHandle:
+    """Build an agent for one robot of an environment, whose interpolation order there is the order of its actions.
 
     Args:
         agent: A name of the registry, the path of a submission, or tcp://HOST:PORT.
-        env: The environment that it is to play.
+        env: The environment that it is to play; one in this process is given a copy of its `env_info`.
         agent_id: 1 or 2.
         mode: Where it lives.
-        limits: What it may use there.
-        patience: The longest time for an answer, in [s]; wins over that of `limits`.
-        order: The interpolation order of its actions in this environment.
+        limits: What it may use there, and how long anybody waits.
         seed: Seeds the generators of a process of its own; in this process the caller does it.
-        env_info: What an agent in this process is given; default: the environment's own.
         kwargs: Handed to the agent.
-
-    Returns:
-        Something with `episode_start`, `draw_action`, `stop`, `interpolation_order` and `preprocessors`.
 
     Raises:
         AgentError: It could not be built where it was to live.
         Exception: In this process: whatever its code raises.
     """
     limits = limits or Limits()
-    if patience is not None:
-        limits = replace(limits, patience=patience)
+    order = env.formats[min(agent_id, env.n_players) - 1].order
     if agent.startswith(REMOTE):
         from airhockey.evaluator.isolation.remote import RemoteAgent
 
         return RemoteAgent(agent, env.env_info, order, limits.patience)
     if mode == "none":
-        from airhockey.evaluator.isolation.build_local import build_with_compatibility
+        from airhockey.evaluator.isolation.build_local import build_local
 
-        return build_with_compatibility(agent, env.env_info if env_info is None else dict(env_info), agent_id, **kwargs)
+        return build_local(agent, copy.deepcopy(env.env_info), agent_id, **kwargs)
     from airhockey.evaluator.isolation.agent_client import IsolatedAgent
     from airhockey.evaluator.isolation.launch import plain, sandboxed
 

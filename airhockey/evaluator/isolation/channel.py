@@ -1,15 +1,15 @@
 """The memory that evaluator and agent share, and the two pipes by which they wake each other.
 
     offset      what                                      written by
-    0           length of the text, in bytes              whoever speaks
-    8           number of dimensions of the action        guest
-    16          its shape, up to 4 numbers                guest
-    64          the observation                           host
-    4096        the action                                guest
-    65536       text: JSON                                whoever speaks
+    0           length of the text, in bytes              the sender
+    8           number of dimensions of the action        agent
+    16          its shape, up to 4 numbers                agent
+    64          the observation                           evaluator
+    4096        the action                                agent
+    65536       text: JSON                                the sender
 
-A word on a pipe is one byte. The host believes nothing that it reads: it copies, and checks. The memory's size is sealed,
-or a guest that truncated it would kill the host.
+A message on a pipe is one byte. The evaluator believes nothing that it reads: it copies, and checks. The memory's size is
+sealed, or an agent that truncated it would kill the evaluator.
 """
 
 import fcntl
@@ -53,7 +53,7 @@ class Memory:
         self._action = np.frombuffer(self._map, np.float64, MAX_ACTION, ACTION)
 
     def write_observation(self, observation: Array) -> None:
-        """Put an observation where the guest reads it. Shape (d,)."""
+        """Put an observation where the agent reads it. Shape (d,)."""
         self._observation[: observation.size] = observation
 
     def read_observation(self, size: int) -> Array:
@@ -61,7 +61,7 @@ class Memory:
         return self._observation[:size].copy()
 
     def write_action(self, action: Array) -> None:
-        """Put an action where the host reads it. At most 4 dimensions and `MAX_ACTION` entries."""
+        """Put an action where the evaluator reads it. At most 4 dimensions and `MAX_ACTION` entries."""
         self._header[1] = action.ndim
         self._header[2 : 2 + action.ndim] = action.shape
         self._action[: action.size] = action.reshape(-1)

@@ -35,7 +35,7 @@ class Launch:
         submission: The path by which the child knows the submission; None for a player of the registry.
         user: Number of the user whom the child becomes; None to stay who it is.
         counted: Whether its processes are counted apart from everybody else's.
-        rubbish: Folders to remove afterwards.
+        temporary_folders: Folders to remove afterwards.
     """
 
     command: list[str]
@@ -44,7 +44,7 @@ class Launch:
     submission: str | None
     user: int | None = None
     counted: bool = False
-    rubbish: list[str] = field(default_factory=list)
+    temporary_folders: list[str] = field(default_factory=list)
 
 
 def plain(folder: Path | None) -> Launch:
@@ -56,7 +56,7 @@ def plain(folder: Path | None) -> Launch:
     scratch = tempfile.mkdtemp(prefix="airhockey-scratch-")
     start = scratch if folder is None else str(folder.parent if folder.name == "air_hockey_agent" else folder)
     name = None if folder is None else str(folder)
-    return Launch(_python(), environment(scratch), start, name, rubbish=[scratch])
+    return Launch(_python(), environment(scratch), start, name, temporary_folders=[scratch])
 
 
 def sandboxed(folder: Path | None, limits: Limits) -> Launch:
@@ -65,15 +65,23 @@ def sandboxed(folder: Path | None, limits: Limits) -> Launch:
     A root who starts it becomes a user of no rights, and of a number that nobody else has: the kernel counts no processes of
     root's. Everybody else gets a user namespace, with a count of its own.
     """
-    rubbish: list[str] = []
+    temporary_folders: list[str] = []
     command = [BWRAP, *_namespaces(), *_file_system(limits.scratch)]
     inside = None
     if folder is not None:
         inside = f"{SUBMISSION}/air_hockey_agent"
-        command += ["--perms", "0755", "--dir", SUBMISSION, "--ro-bind", str(_readable(folder, rubbish)), inside]
+        command += [
+            "--perms",
+            "0755",
+            "--dir",
+            SUBMISSION,
+            "--ro-bind",
+            str(_readable(folder, temporary_folders)),
+            inside,
+        ]
     command += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/" if folder is None else SUBMISSION, "--"]
     user = _FIRST_USER + secrets.randbelow(_USERS) if is_root() else None
-    return Launch([*command, *_python()], environment(SCRATCH), "/", inside, user, True, rubbish)
+    return Launch([*command, *_python()], environment(SCRATCH), "/", inside, user, True, temporary_folders)
 
 
 @functools.cache
@@ -168,12 +176,12 @@ def _package() -> Path:
     return Path(next(iter(airhockey.__path__))).resolve()
 
 
-def _readable(folder: Path, rubbish: list[str]) -> Path:
+def _readable(folder: Path, temporary_folders: list[str]) -> Path:
     """The folder, or a copy where another user could not read it."""
     if not is_root() or all(path.stat().st_mode & 0o004 for path in (folder, *folder.rglob("*")) if path.exists()):
         return folder
     copy = Path(tempfile.mkdtemp(prefix="airhockey-submission-"))
-    rubbish.append(str(copy))
+    temporary_folders.append(str(copy))
     shutil.copytree(folder, copy / "air_hockey_agent")
     for path in (copy, *copy.rglob("*")):
         path.chmod(0o755 if path.is_dir() else 0o644)

@@ -41,8 +41,10 @@ class RemoteAgent(AgentHandle):
         AgentError: Nobody answers there.
     """
 
+    phase = "remote"
+
     def __init__(self, address: str, env_info: Mapping[str, Any], order: int | None, patience: float) -> None:
-        self.interpolation_order, self.phase, self.next_action = order, "remote", None
+        self.interpolation_order = order
         self._shape = ActionFormat(order, env_info["robot"]["n_joints"]).shape
         self._address, self._patience = address, patience
         try:
@@ -53,7 +55,7 @@ class RemoteAgent(AgentHandle):
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     @property
-    def preprocessors(self) -> tuple[Any, ...]:
+    def preprocessors(self) -> tuple[Callable[[Array], Array], ...]:
         """The agent's own, which are applied over there."""
         return (self._preprocess,)
 
@@ -62,7 +64,7 @@ class RemoteAgent(AgentHandle):
         if self._exchange(RESET, 1) != RESET_DONE:
             raise self._broken("it did not confirm the start of the episode")
 
-    def draw_action(self, observation: Array) -> Array:
+    def act(self, observation: Array) -> Array:
         """The next command, in the shape of the interpolation order."""
         count = int(np.prod(self._shape))
         return np.frombuffer(self._exchange(ACT + _raw(observation), 8 * count)).reshape(self._shape).copy()

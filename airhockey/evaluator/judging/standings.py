@@ -1,7 +1,10 @@
 """Standings of a tournament, from the records of its games alone.
 
-3 points for a win, 1 for a draw, 0 for a loss. Ties are broken, in this order, by: goal difference, goals, points in the games
-among those tied (head to head), fewer penalty points, name. "Goals" are all points on the score board, faults' included.
+3 points for a win, 1 for a draw, 0 for a loss: an entry's *points*. The score board of a game counts other ones, *points for* an
+entry and *points against* it: its goals, and those that it was given *by faults* of the opponent. Ties are broken, in this order,
+by: difference of the score board's points, those for, points in the games among those tied (head to head), fewer penalty
+points, name.
+
 Ratings (openskill, Plackett-Luce) are computed over the games in the order of the schedule, so that they do not depend on
 the order in which the games happened to be played.
 """
@@ -16,8 +19,7 @@ from typing import Any
 import msgspec
 
 from airhockey.evaluator.runs.disk import disk_errors, replace_file, write_record
-from airhockey.evaluator.runs.game_folder import in_order
-from airhockey.evaluator.runs.game_records import GameJob, GameRecord
+from airhockey.evaluator.runs.game_records import GameJob, GameRecord, in_order
 
 WIN, DRAW = 3, 1
 
@@ -27,7 +29,10 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
 
     Attributes:
         points: 3 per win, 1 per draw.
-        goals, conceded, difference: On the score board.
+        goals, conceded: Goals scored, and those of the opponents.
+        by_faults: Points on the score board for the opponents' faults.
+        points_for, points_against: On the score board: goals, and points by faults.
+        difference: Of those two.
         penalty: Penalty points over all its games.
         forfeits: Games that it failed.
         rating, uncertainty: Mean and standard deviation of its skill (openskill; everybody starts at 25 ± 8.33).
@@ -41,6 +46,9 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     lost: int
     goals: int
     conceded: int
+    by_faults: int
+    points_for: int
+    points_against: int
     difference: int
     points: int
     penalty: float
@@ -61,7 +69,8 @@ class _Score:
     """Adds up one entry's games."""
 
     def __init__(self) -> None:
-        self.won = self.drawn = self.lost = self.goals = self.conceded = self.forfeits = 0
+        self.won = self.drawn = self.lost = self.forfeits = 0
+        self.goals = self.conceded = self.by_faults = self.points_for = self.points_against = 0
         self.penalty = 0.0
 
     @property
@@ -69,8 +78,12 @@ class _Score:
         return WIN * self.won + DRAW * self.drawn
 
     @property
+    def difference(self) -> int:
+        return self.points_for - self.points_against
+
+    @property
     def key(self) -> tuple[int, int, int]:
-        return self.points, self.goals - self.conceded, self.goals
+        return self.points, self.difference, self.points_for
 
 
 def standings(names: Sequence[str], jobs: Sequence[GameJob], records: Iterable[GameRecord]) -> Standings:
@@ -100,7 +113,10 @@ def standings(names: Sequence[str], jobs: Sequence[GameJob], records: Iterable[G
                 lost=score.lost,
                 goals=score.goals,
                 conceded=score.conceded,
-                difference=score.goals - score.conceded,
+                by_faults=score.by_faults,
+                points_for=score.points_for,
+                points_against=score.points_against,
+                difference=score.difference,
                 points=score.points,
                 penalty=score.penalty,
                 forfeits=score.forfeits,
@@ -131,8 +147,11 @@ def as_csv(table: Standings) -> str:
 
 def _add(score: _Score, record: GameRecord, home: bool) -> None:
     mine, theirs = (record.home, record.away) if home else (record.away, record.home)
-    score.goals += mine.points
-    score.conceded += theirs.points
+    score.goals += mine.goals
+    score.conceded += theirs.goals
+    score.by_faults += mine.points_by_faults
+    score.points_for += mine.points
+    score.points_against += theirs.points
     score.penalty += mine.penalty
     score.forfeits += mine.failure is not None
     if record.winner == "draw":

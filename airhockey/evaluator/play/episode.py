@@ -1,175 +1,130 @@
-"""Playing one episode: the agent proposes, the environment moves, and everything is kept for the judge."""
+"""Episodes of tasks: the function that engines run. It builds the environment and the seat once for many episodes."""
 
-import contextlib
-import signal
-import time
-import traceback
-from collections.abc import Callable
-from typing import Any, Final
+import functools
+import gc
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-from airhockey.errors import AirHockeyError
-from airhockey.evaluator.isolation.failures import AgentRaised
-from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, StepTime, Trajectory
-
-CLOCKS: Final[dict[str, Callable[[], float]]] = {"wall": time.perf_counter, "cpu": time.thread_time}
-
-
-class Recorder:
-    """Buffers for one episode, reused from episode to episode. `trajectory()` says what they hold."""
-
-    def __init__(self, env: Any, observation_size: int, disturbed: bool) -> None:
-        """Allocate buffers for an environment.
-
-        Args:
-            env: Has `horizon`, `constraint_slices`, `constraint_values` and `true_observation`.
-            observation_size: Number of entries of an observation.
-            disturbed: Whether the agent may see something else than what is judged.
-        """
-        self.horizon = int(env.horizon)
-        self.steps = 0
-        self.constraint_slices: dict[str, slice] = dict(env.constraint_slices)
-        self.constraint_values = np.empty((self.horizon, env.constraint_values.size))
-        self._env = env
-        self._disturbed = disturbed
-        self._observations = np.empty((self.horizon + 1, observation_size))
-        self._true_observations = np.empty((self.horizon + 1, observation_size))
-        self._actions = np.empty((self.horizon, 0))
-        self._rewards = np.empty(self.horizon)
-        self._computation_time = np.empty(self.horizon)
-
-    def clear(self) -> None:
-        """Make room for the next episode."""
-        self.steps = 0
-
-    def start(self, observation: Any) -> None:
-        """Keep the first observation."""
-        self._observations[0] = observation
-        if self._disturbed:
-            self._true_observations[0] = self._env.true_observation
-
-    def add(self, action: Any, reward: float, seconds: float, observation: Any) -> None:
-        """Keep one step: the action, what `draw_action` took, and what came of it."""
-        step = self.steps
-        if step == 0 and self._actions.shape[1:] != np.shape(action):
-            self._actions = np.empty((self.horizon, *np.shape(action)))
-        self._actions[step] = action
-        self._rewards[step] = reward
-        self._computation_time[step] = seconds
-        self.constraint_values[step] = self._env.constraint_values
-        self._observations[step + 1] = observation
-        if self._disturbed:
-            self._true_observations[step + 1] = self._env.true_observation
-        self.steps = step + 1
-
-    def trajectory(self) -> Trajectory:
-        """Copies of what was kept, by name.
-
-        Returns:
-            `observations`, as the agent was given them, and `true_observations` where they may differ, (T + 1, d);
-            `actions`, by interpolation order, (T, …); `rewards` (T,); `computation_time` (T,) in [s];
-            `constraints/<name>` (T, c), violated where > 0.
-        """
-        steps = self.steps
-        kept = {"observations": self._observations[: steps + 1].copy()}
-        if self._disturbed:
-            kept["true_observations"] = self._true_observations[: steps + 1].copy()
-        kept["actions"] = self._actions[:steps].copy()
-        kept["rewards"] = self._rewards[:steps].copy()
-        kept["computation_time"] = self._computation_time[:steps].copy()
-        for name, columns in self.constraint_slices.items():
-            kept[f"constraints/{name}"] = self.constraint_values[:steps, columns].copy()
-        return kept
+from airhockey.envs.disturbances import Disturbances
+from airhockey.evaluator.isolation.limits import Limits
+from airhockey.evaluator.play import seeding
+from airhockey.evaluator.play.build_seats import Entrant, build_seats
+from airhockey.evaluator.play.recorder import Recorder, violated_steps
+from airhockey.evaluator.play.rollout import Rollout
+from airhockey.evaluator.play.seat import Care, Seat
+from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, Options, StepTime
 
 
-def play(
-    job: Job, env: Any, agent: Any, seed: np.random.SeedSequence, clock: Callable[[], float], recorder: Recorder
-) -> Episode:
+def play(job: Job, rollout: Rollout, recorder: Recorder) -> Episode:
     """Play an episode to its end, or to the agent's failure.
-
-    The order of calls is the official core's: the agent's `episode_start`, then the environment's reset, then steps.
 
     Args:
         job: Which episode this is.
-        env: The simulation.
-        agent: Has `episode_start`, `draw_action` and perhaps `preprocessors`.
-        seed: The environment's.
-        clock: Measures `draw_action`, in [s].
+        rollout: Of one seat, not begun.
         recorder: Buffers of this environment's size.
     """
-    recorder.clear()
-    absorbing, success, error = False, False, None
-    try:
-        absorbing, success = _play(env, agent, seed, clock, recorder)
-    except agent_failures() as failure:
-        error = f"step {recorder.steps}: {describe(failure)}"
+    (seat,) = rollout.seats
+    recorder.start(rollout.begin())
+    step, add = rollout.step, recorder.add
+    while not rollout.over and recorder.steps < recorder.horizon and step():
+        add(seat.action, rollout.reward, seat.seconds, rollout.observation)
+    went_well = seat.failure is None
     trajectory = recorder.trajectory() if recorder.steps else {}
     times = trajectory.get("computation_time", np.empty(0))
     record = EpisodeRecord(
         env=job.env,
         index=job.index,
-        success=success,
+        success=went_well and bool(rollout.info["success"]),
         steps=recorder.steps,
-        absorbing=absorbing,
+        absorbing=went_well and bool(rollout.over),
         violations=violated_steps(recorder.constraint_values[: recorder.steps], recorder.constraint_slices),
         computation_time=StepTime(mean=float(times.mean()), max=float(times.max())) if times.size else StepTime(),
-        error=error,
+        error=seat.failure,
     )
     return Episode(record, trajectory)
 
 
-def _play(
-    env: Any, agent: Any, seed: np.random.SeedSequence, clock: Callable[[], float], recorder: Recorder
-) -> tuple[bool, bool]:
-    """The control loop. Returns whether the task ended the episode, and whether the last step counts as a success."""
-    agent.episode_start()
-    preprocessors = tuple(getattr(agent, "preprocessors", ()))
-    draw_action, step, add = agent.draw_action, env.step, recorder.add
-    observation = env.reset(seed=seed)
-    recorder.start(observation)
-    absorbing, info = False, {}
-    for _ in range(recorder.horizon):
-        for preprocessor in preprocessors:
-            observation = preprocessor(observation)
-        started = clock()
-        action = draw_action(observation)
-        seconds = clock() - started
-        observation, reward, absorbing, info = step(action)
-        add(action, reward, seconds, observation)
-        if absorbing:
-            break
-    return bool(absorbing), bool(info["success"])
+@dataclass
+class _Task:
+    """What is built for one environment."""
+
+    name: str
+    env: Any
+    seats: tuple[Seat, ...]
+    recorder: Recorder
+
+    @property
+    def broke_down(self) -> bool:
+        """Whether an agent that could be built has failed; it is to start afresh."""
+        return any(seat.agent is not None and seat.failure is not None for seat in self.seats)
 
 
-def violated_steps(constraint_values: Any, slices: dict[str, slice]) -> dict[str, int]:
-    """Constraint name -> number of steps that violated it.
+@dataclass
+class EpisodePlayer:
+    """Plays the episodes of a run. Picklable until it has played the first one.
 
-    Args:
-        constraint_values: Violated where > 0. Shape (T, c).
-        slices: Constraint name -> its columns.
+    Attributes:
+        options: The run's.
+        profile: The disturbances, which `options` name.
     """
-    violated = constraint_values > 0.0
-    return {name: int(violated[:, columns].any(axis=1).sum()) for name, columns in slices.items()}
+
+    options: Options
+    profile: Disturbances
+    _task: _Task | None = field(default=None, repr=False)
+
+    def __call__(self, job: Job) -> Episode:
+        """Play one episode; the result depends on the options and on the job, not on what was played before."""
+        rollout = self.open(job)
+        (seat,) = rollout.seats
+        if seat.failure is not None:
+            return failed(job, seat.failure)
+        assert self._task is not None
+        return play(job, rollout, self._task.recorder)
+
+    def open(self, job: Job) -> Rollout:
+        """An episode that is not begun, its agent seeded; the seat has failed where there is no agent."""
+        task, seed = self._task_of(job.env), functools.partial(seeding.seed_of, self.options.seed, job.env, job.index)
+        seeding.seed_global_generators(seed(seeding.AGENT))
+        for seat in task.seats:
+            seat.seed(seed(seeding.AGENT))
+        return Rollout(task.env, task.seats, seed(seeding.ENVIRONMENT))
+
+    def close(self) -> None:
+        """Tell the agent that the evaluation is over, and let go of everything built."""
+        task, self._task = self._task, None
+        gc.unfreeze()
+        for seat in () if task is None else task.seats:
+            seat.stop()
+
+    def _task_of(self, name: str) -> _Task:
+        """The environment and its seat, built for another one than the last, and after an agent broke down."""
+        if self._task is None or self._task.name != name or self._task.broke_down:
+            self.close()
+            self._task = self._build(name)
+            gc.collect()
+            gc.freeze()  # or a collection in the middle of an episode would walk over every module ever imported
+        return self._task
+
+    def _build(self, name: str) -> _Task:
+        from airhockey import envs
+
+        options = self.options
+        seed = seeding.seed_of(options.seed, name, 0, seeding.AGENT_BUILD)
+        entrant = Entrant(
+            options.agent,
+            options.interpolation_order,
+            options.isolate,
+            Limits(patience=options.patience),
+            options.parameters,
+            seed,
+        )
+        make = functools.partial(envs.make, name, disturbances=self.profile, edition=options.edition)
+        env, seats = build_seats(make, [entrant], Care(options.clock), seed)
+        return _Task(name, env, seats, Recorder(env, env.reset(seed=0).size, self.profile.blurs_observations))
 
 
-def agent_failures() -> tuple[type[BaseException], ...]:
-    """What counts as the agent's failure when its code is called.
-
-    A KeyboardInterrupt is the user's, unless this process ignores the user's: then only the agent can have raised it.
-    """
-    ignored = signal.getsignal(signal.SIGINT) is signal.SIG_IGN
-    return (Exception, SystemExit, KeyboardInterrupt) if ignored else (Exception, SystemExit)
-
-
-def describe(failure: BaseException) -> str:
-    """One line: the kind of error, what it says, and for an error that is not ours the file and line."""
-    text = " ".join(str(failure).split())[:300]
-    if isinstance(failure, AgentRaised):
-        return text  # described where it was raised
-    place = ""
-    if not isinstance(failure, AirHockeyError):
-        with contextlib.suppress(IndexError):
-            frame = traceback.extract_tb(failure.__traceback__)[-1]
-            place = f" ({frame.filename.rsplit('/', 1)[-1]}:{frame.lineno})"
-    return f"{type(failure).__name__}: {text}{place}" if text else f"{type(failure).__name__}{place}"
+def failed(job: Job, reason: str) -> Episode:
+    """An episode that the agent failed before its first step."""
+    return Episode(EpisodeRecord(env=job.env, index=job.index, error=reason), {})

@@ -1,26 +1,34 @@
-"""Playing one game: both agents propose, the environment moves and referees, everything is kept for the judge."""
+"""Games: the function that engines run. It seats two agents at a table for one game, plays it, and keeps it for the judge."""
 
+import functools
+import gc
+import re
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.disturbances import Disturbances
 from airhockey.envs.editions import edition
-from airhockey.envs.kernel import referee
 from airhockey.errors import ActionError, SimulationError
-from airhockey.evaluator.isolation.handle import AgentHandle
-from airhockey.evaluator.judging.games import game_class, winner
-from airhockey.evaluator.play.competitor import Competitor
-from airhockey.evaluator.play.episode import CLOCKS
+from airhockey.evaluator.isolation.failures import describe
+from airhockey.evaluator.isolation.limits import Limits
+from airhockey.evaluator.judging.games import PenaltyCount, game_class, winner
+from airhockey.evaluator.play.build_seats import Entrant, build_seats
+from airhockey.evaluator.play.events import EventLog
+from airhockey.evaluator.play.penalties import Penalties
+from airhockey.evaluator.play.rollout import Rollout
+from airhockey.evaluator.play.seat import Care, Seat
 from airhockey.evaluator.play.seeding import seed_global_generators
 from airhockey.evaluator.play.watchdog import Watch
 from airhockey.evaluator.runs.game_records import (
     AWAY,
     HOME,
-    SIDES,
     Event,
     GameJob,
     GameOptions,
@@ -28,15 +36,23 @@ from airhockey.evaluator.runs.game_records import (
     PlayerResult,
     Side,
     Status,
+    file_name,
 )
-from airhockey.evaluator.runs.game_trajectories import Film
+from airhockey.evaluator.runs.game_trajectories import Film, Rows
 from airhockey.evaluator.runs.records import StepTime
 
 Array = NDArray[np.float64]
-OnStep = Callable[[Status], None]
+TIME_LIMIT = 0.02
+"""Longest time for one action, in [s], before the previous position is held."""
 
 
-@dataclass
+class Game(msgspec.Struct, frozen=True):
+    """A played game: what the journal gets and what the trajectory file gets."""
+
+    record: GameRecord
+    film: Rows
+
+
 class GamePlay:
     """A game in progress.
 
@@ -44,83 +60,76 @@ class GamePlay:
         job: Which game.
         options: How it is played.
         env: The tournament environment.
-        agents: Home's and away's, None where one could not be built.
-        failures: Why not.
+        seats: Home's and away's.
+
+    Attributes:
         film: Keeps what is needed to show the game again; None for nothing.
-        watch: Watches the agents.
-        on_step: Called with the status after every `every` steps.
     """
 
-    job: GameJob
-    options: GameOptions
-    env: Any
-    agents: tuple[Any, Any]
-    failures: tuple[str | None, str | None] = (None, None)
-    film: Film | None = None
-    watch: Watch = field(default_factory=Watch)
-    on_step: OnStep | None = None
-    every: int = 250
-    events: list[Event] = field(default_factory=list)
+    def __init__(self, job: GameJob, options: GameOptions, env: Any, seats: tuple[Seat, ...]) -> None:
+        self.job, self.options, self.env, self.seats = job, options, env, seats
+        self.film: Film | None = None
+        self._rules = edition(options.edition)
+        self._episode = self._rules.horizon.task
+        self._environment_seed, self._agents_seed = np.random.SeedSequence(job.seed).spawn(2)
+        self.rollout = Rollout(env, seats, self._environment_seed)
+        self.log = EventLog(env, self._rules.game.faults_per_point)
+        self.penalties = [Penalties(seat, self._rules, env.constraint_slices) for seat in seats]
 
-    def __post_init__(self) -> None:
-        self.rules = edition(self.options.edition)
-        slices = self.env.constraint_slices
-        self.competitors = [
-            Competitor(side, agent, form, self.rules, slices, self._clock_of(agent), self.watch, failure)
-            for side, agent, form, failure in zip(SIDES, self.agents, self.env.formats, self.failures, strict=True)
-        ]
-        self.goals = [0, 0]
-        self._reported = 0, time.monotonic()
+    @property
+    def events(self) -> list[Event]:
+        """What happened so far."""
+        return self.log.events
 
-    def play(self) -> GameRecord:
-        """Play to the last step, or to a forfeit."""
-        observation, step = self.begin(), 0
-        while step < self.options.steps and not self._forfeit(step):
-            step += 1
-            observation = self.step(observation, step)
-        return self.end(step)
+    @property
+    def over(self) -> bool:
+        """Whether its last step is played, or a player has failed."""
+        return self.rollout.steps >= self.options.steps or self.rollout.failed
 
-    def begin(self) -> Array:
-        """Seed everything and serve; gives the first observation. Shape (46,)."""
-        environment, agents = np.random.SeedSequence(self.job.seed).spawn(2)
-        seed_global_generators(agents)
-        for agent, seed in zip(self.agents, agents.spawn(2), strict=True):
-            if isinstance(agent, AgentHandle):
-                agent.seed(seed)
-        return self._serve(self.env.reset(seed=environment), 0)
+    def play(self, on_step: Callable[["GamePlay"], None] | None = None) -> GameRecord:
+        """Play to the last step, or to a forfeit.
 
-    def step(self, observation: Array, step: int) -> Array:
-        """One control step, and a new serve where it ends one; gives the next observation. Shapes (46,)."""
-        half = observation.size // 2
-        actions = []
-        for competitor, seen in zip(self.competitors, (observation[:half], observation[half:]), strict=True):
-            action, held = competitor.act(seen.copy(), step)
-            actions.append(action)
-            if held:
-                self.events.append(Event(step=step, what="held", who=competitor.side))
-        if self._forfeit(step):
-            return observation
-        try:
-            observation, _, over, _ = self.env.step((actions[0], actions[1]))
-        except (ActionError, SimulationError) as error:
-            self._blame(f"step {step}: {str(error).partition(': ')[2]}")  # it counts from the serve
-            return observation
-        for competitor, constraints in zip(self.competitors, self.env.constraint_values, strict=True):
-            competitor.see(constraints)
+        Args:
+            on_step: Called after every control step.
+        """
+        self.begin()
+        while not self.over:
+            if self.step() and on_step is not None:
+                on_step(self)
+        return self.end()
+
+    def begin(self) -> None:
+        """Seed everything and serve."""
+        seed_global_generators(self._agents_seed)
+        for seat, seed in zip(self.seats, self._agents_seed.spawn(2), strict=True):
+            seat.seed(seed)
+        self._serve()
+
+    def step(self) -> bool:
+        """One control step, and a new serve where it ends one; False where a player failed."""
+        rollout = self.rollout
+        finished, step = rollout.step(), rollout.steps
+        home, away = self.seats
+        if home.late or away.late:
+            self._note_late(step)
+        if not finished:
+            return False
+        constraints = self.env.constraint_values
+        self.penalties[0].see(constraints[0])
+        self.penalties[1].see(constraints[1])
         if self.film is not None:
             self.film.add(self.env)
-        if step % self.rules.horizon.task == 0:
+        if step % self._episode == 0:
             self._end_episode(step)
-        if over:
-            self._note(self.env.verdict, step)
-            observation = self._serve(self.env.reset(), step)
-        if step % self.every == 0:
-            self._report(step)
-        return observation
+        if rollout.over:
+            self.log.verdict(step)
+            self._serve()
+        return True
 
-    def end(self, step: int) -> GameRecord:
-        """The record of a game that ended with this step."""
-        self._forfeit(step)
+    def end(self) -> GameRecord:
+        """The record of a game that is over."""
+        step = self.rollout.steps
+        self.log.forfeits(step, self.seats)
         self._end_episode(step)
         home, away = (self._result(k, max(step, 1)) for k in range(2))
         return GameRecord(
@@ -128,106 +137,158 @@ class GamePlay:
             steps=step,
             home=home,
             away=away,
-            winner=winner(self.rules, self.options.variant, self.options.steps, home, away),
+            winner=winner(self._rules, self.options.variant, self.options.steps, home, away),
             events=tuple(sorted(self.events, key=lambda event: event.step)),
         )
 
-    def _clock_of(self, agent: Any) -> Callable[[], float]:
-        return agent.clock(self.options.clock) if isinstance(agent, AgentHandle) else CLOCKS[self.options.clock]
-
-    def _end_episode(self, step: int) -> None:
-        for competitor in self.competitors:
-            self.events += competitor.end_episode(step)
-
-    def _serve(self, observation: Array, step: int) -> Array:
-        """Both agents hear of the serve."""
-        half = observation.size // 2
-        joints = self.env.env_info["joint_pos_ids"]
-        for k, competitor in enumerate(self.competitors):
-            if competitor.failure is None:
-                competitor.serve(self.env.true_observation[k * half : (k + 1) * half][joints])
-        self.events.append(Event(step=step, what="serve", who=self._side(), score=self._score()))
-        return observation
-
-    def _note(self, verdict: int, step: int) -> None:
-        """Turn the referee's verdict into events."""
-        x, y, _, speed_x, speed_y, _ = self.env.base_observation[:6]
-        where = f"the puck was at ({x:+.3f}, {y:+.3f}) m with ({speed_x:+.2f}, {speed_y:+.2f}) m/s"
-        if verdict in (referee.GOAL_HOME, referee.GOAL_AWAY):
-            scorer = 0 if verdict == referee.GOAL_HOME else 1
-            self.goals[scorer] += 1
-            self.events.append(Event(step=step, what="goal", who=SIDES[scorer], score=self._score(), why=where))
-        elif verdict in (referee.FAULT_HOME, referee.FAULT_AWAY):
-            self._note_fault(0 if verdict == referee.FAULT_HOME else 1, step, where)
-        else:
-            what = "stuck" if verdict == referee.STUCK else "out"
-            self.events.append(Event(step=step, what=what, score=self._score(), why=where))
-
-    def _note_fault(self, guilty: int, step: int, where: str) -> None:
-        since = float(self.env.simulation.game.timer[0])
-        why = f"its side held the puck for {since:.2f} s; {where}"
-        self.events.append(Event(step=step, what="fault", who=SIDES[guilty], score=self._score(), why=why))
-        faults, per_point = self.env.faults[guilty], self.rules.game.faults_per_point
-        if faults % per_point == 0:
-            why = f"fault {faults} of {SIDES[guilty]}, and every {per_point} give a point"
-            self.events.append(Event(step=step, what="point", who=SIDES[1 - guilty], score=self._score(), why=why))
-
-    def _blame(self, why: str) -> None:
-        """The simulation failed: over the player whose command was absurd, or over both."""
-        absurd = [competitor for competitor in self.competitors if competitor.commands_the_absurd]
-        for competitor in absurd or self.competitors:
-            competitor.failure = why
-
-    def _forfeit(self, step: int) -> bool:
-        """Whether a player has failed; said once for each."""
-        failed = [competitor for competitor in self.competitors if competitor.failure is not None]
-        if not failed:
-            return False
-        told = {event.who for event in self.events if event.what == "forfeit"}
-        for competitor in failed:
-            if competitor.side not in told:
-                event = Event(
-                    step=step, what="forfeit", who=competitor.side, score=self._score(), why=competitor.failure
-                )
-                self.events.append(event)
-        return True
-
-    def _score(self) -> tuple[int, int]:
-        home, away = self.env.score
-        return home, away
-
-    def _side(self) -> Side:
-        return HOME if self.env.base_observation[0] < 0.0 else AWAY
-
-    def _report(self, step: int) -> None:
-        before, since = self._reported
-        self._reported = step, time.monotonic()
-        status = Status(
+    def status(self, rate: float) -> Status:
+        """How the game stands, at so many control steps per second."""
+        home, away = self.penalties
+        return Status(
             key=self.job.key,
             home=self.job.home,
             away=self.job.away,
-            step=step,
+            step=self.rollout.steps,
             steps=self.options.steps,
-            score=self._score(),
+            score=self.log.score,
             faults=(self.env.faults[0], self.env.faults[1]),
-            penalty=(self.competitors[0].penalties.points, self.competitors[1].penalties.points),
-            side=self._side(),
-            rate=(step - before) / max(self._reported[1] - since, 1e-9),
+            penalty=(home.count.points, away.count.points),
+            side=self.log.side,
+            rate=rate,
         )
-        self.watch.tell(status)
-        if self.on_step is not None:
-            self.on_step(status)
+
+    def _serve(self) -> None:
+        """Both agents hear of the serve; where it finds them they stay if they are late at once."""
+        self.rollout.begin()
+        joints, half = self.env.env_info["joint_pos_ids"], self.rollout.observation.size // 2
+        for k, seat in enumerate(self.seats):
+            seat.position = self.env.true_observation[k * half : (k + 1) * half][joints]
+        self.log.serve(self.rollout.steps)
+
+    def _note_late(self, step: int) -> None:
+        for seat, penalties in zip(self.seats, self.penalties, strict=True):
+            if seat.late:
+                penalties.held += 1
+                self.log.held(step, seat.side)
+
+    def _end_episode(self, step: int) -> None:
+        for penalties in self.penalties:
+            self.events.extend(penalties.end_episode(step))
 
     def _result(self, k: int, steps: int) -> PlayerResult:
-        competitor, penalties = self.competitors[k], self.competitors[k].penalties
+        penalties, goals = self.penalties[k], self.log.goals[k]
         return PlayerResult(
-            goals=self.goals[k],
-            points_by_faults=self._score()[k] - self.goals[k],
+            goals=goals,
+            points_by_faults=self.log.score[k] - goals,
             faults=self.env.faults[k],
-            penalty=penalties.points,
-            deployability=game_class(self.rules, penalties.points, steps),
-            violations=dict(penalties.violations),
-            held=competitor.held,
-            computation_time=StepTime(mean=competitor.total / max(competitor.steps, 1), max=competitor.longest),
-            failure=competitor.failure,
+            penalty=penalties.count.points,
+            deployability=game_class(self._rules, penalties.count.points, steps),
+            violations=dict(penalties.count.violations),
+            held=penalties.held,
+            computation_time=penalties.computation_time,
+            failure=self.seats[k].failure,
         )
+
+
+def failed_in_game(failure: BaseException, step: int) -> str:
+    """Why a player failed, by the game's control step; an environment's own count begins with the serve."""
+    if step == 0:
+        return f"episode_start: {describe(failure)}"
+    if isinstance(failure, (ActionError, SimulationError)):
+        return f"step {step}: {re.sub(r'^step [0-9]+: ', '', str(failure))}"
+    return f"step {step}: {describe(failure)}"
+
+
+@dataclass
+class GamePlayer:
+    """Plays games; each with players built for it alone, so that no game depends on another.
+
+    Attributes:
+        options: How games are played.
+        profile: The disturbances, which `options` name.
+        live: Folder where games in progress are shown, if this process sees it; None for nowhere.
+        on_step: Called now and then, where games are played in this process.
+        every: Control steps between two reports.
+    """
+
+    options: GameOptions
+    profile: Disturbances
+    live: Path | None = None
+    on_step: Callable[[Status], None] | None = None
+    every: int = 250
+
+    def __call__(self, job: GameJob) -> Game:
+        """Play one game from its job alone."""
+        with Watch(None if self.live is None else live_file(self.live, job)) as watch:
+            game = self.open(job, watch)
+            game.film = film = Film(self.options.steps, game.env.base_observation.size)
+            gc.collect()
+            gc.freeze()  # or a collection in the middle of a game would walk over every module ever imported
+            record = game.play(self._reporter(watch))
+            for seat in game.seats:
+                seat.stop()
+            gc.unfreeze()
+        return Game(record, film.rows)
+
+    def open(self, job: GameJob, watch: Watch | None = None) -> GamePlay:
+        """The players and the table, ready to begin."""
+        from airhockey import envs
+
+        seed = functools.partial(np.random.SeedSequence, job.seed)
+        given = self.options.isolate, Limits(patience=self.options.patience), None
+        home = Entrant(job.home_agent, job.home_order, *given, seed(spawn_key=(2, 1)))
+        away = Entrant(job.away_agent, job.away_order, *given, seed(spawn_key=(2, 2)))
+        make = functools.partial(envs.make, "tournament", disturbances=self.profile, edition=self.options.edition)
+        care = Care(self.options.clock, TIME_LIMIT, failed_in_game, watch or Watch())
+        env, seats = build_seats(make, (home, away), care, seed(spawn_key=(2,)))
+        return GamePlay(job, self.options, env, seats)
+
+    def _reporter(self, watch: Watch) -> Callable[[GamePlay], None]:
+        """Shows now and then how a game stands."""
+        before = time.monotonic()
+
+        def report(game: GamePlay) -> None:
+            nonlocal before
+            if game.rollout.steps % self.every:
+                return
+            since, before = before, time.monotonic()
+            status = game.status(self.every / max(before - since, 1e-9))
+            watch.tell(status)
+            if self.on_step is not None:
+                self.on_step(status)
+
+        return report
+
+
+def live_file(folder: Path, job: GameJob) -> Path:
+    """Where a game in progress is shown."""
+    return folder / file_name(job.key)
+
+
+def lost(job: GameJob, options: GameOptions, reason: str, guilty: Side | None) -> Game:
+    """A game whose worker died every time; it is forfeited by the player whose code ran then, or by both if nobody knows."""
+    rules = edition(options.edition)
+
+    def result(side: Side) -> PlayerResult:
+        return PlayerResult(
+            goals=0,
+            points_by_faults=0,
+            faults=0,
+            penalty=0.0,
+            deployability=game_class(rules, 0.0, 1),
+            violations=PenaltyCount(rules).violations,
+            held=0,
+            computation_time=StepTime(),
+            failure=reason if guilty in (side, None) else None,
+        )
+
+    home, away = result(HOME), result(AWAY)
+    record = GameRecord(
+        job=job,
+        steps=0,
+        home=home,
+        away=away,
+        winner=winner(rules, options.variant, options.steps, home, away),
+        events=(Event(step=0, what="forfeit", who=guilty, why=reason),),
+    )
+    return Game(record, np.empty((0, 0), dtype=np.float32))

@@ -3,8 +3,10 @@
 import random
 import sys
 import zlib
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 ENVIRONMENT, AGENT, AGENT_BUILD = range(3)
 
@@ -28,8 +30,12 @@ def game_seed(run_seed: int, key: str) -> int:
 
 
 def seed_global_generators(seed: np.random.SeedSequence) -> None:
-    """Seed the generators that an agent may draw from without asking: Python's, NumPy's and, where loaded, torch's."""
-    words = seed.generate_state(4)
+    """Seed the generators that an agent in this process may draw from without asking."""
+    seed_generators(seed.generate_state(4))
+
+
+def seed_generators(words: NDArray[Any]) -> None:
+    """Seed Python's generator, NumPy's and, where loaded, torch's. Shape (4,)."""
     np.random.seed(words)
     number = int(words[0])
     random.seed(number)

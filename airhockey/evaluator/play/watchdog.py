@@ -5,13 +5,14 @@
 The file is mapped into memory: what was written last survives the process, and costs no more than an assignment.
 """
 
+import contextlib
 import ctypes
 import mmap
 import signal
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Final, Self
 
 import msgspec
@@ -41,8 +42,7 @@ class Watch:
     def __init__(self, file: Path | None = None, patience: float = PATIENCE) -> None:
         self._file, self._patience = file, patience
         self._map: Any = bytearray(_SIZE)
-        self._side: Side = HOME
-        self._since: float | None = None
+        self._calls, self._seen, self._since = 0, -1, 0.0
         self._thread = threading.get_ident()
         self._over = threading.Event()
         self._handler: Any = None
@@ -69,49 +69,48 @@ class Watch:
             assert self._file is not None
             self._file.unlink(missing_ok=True)
 
-    def over(self, side: Side) -> "_Call":
+    def enter(self, side: Side) -> None:
+        """A call of this side's code begins."""
+        self._map[0] = _BYTES[side]
+        self._calls += 1
+
+    def leave(self) -> None:
+        """The call has returned."""
+        self._map[0] = _NOBODY
+
+    @contextlib.contextmanager
+    def over(self, side: Side) -> Iterator[None]:
         """A context around a call of this side's code."""
-        self._side = side
-        return _Call(self)
+        self.enter(side)
+        try:
+            yield
+        finally:
+            self.leave()
 
     def tell(self, status: Status) -> None:
         """Show how the game stands."""
         self._map[1:_SIZE] = msgspec.json.encode(status).ljust(_SIZE - 1)[: _SIZE - 1]
 
-    @property
     def _is_overdue(self) -> bool:
         """Whether the present call has lasted too long; one that swallows its end is ended again and again."""
-        return self._since is not None and time.monotonic() - self._since > self._patience
+        now = time.monotonic()
+        if self._map[0] == _NOBODY or self._calls != self._seen:
+            self._seen, self._since = (
+                self._calls,
+                now,
+            )  # first seen at this beat of the clock, to spare every call a look
+            return False
+        return now - self._since > self._patience
 
     def _on_alarm(self, *_: object) -> None:
-        if self._is_overdue:
+        if self._is_overdue():
             raise Overtime(f"it did not return within {self._patience:g} s")
 
     def _look_from_outside(self) -> None:
         """Where signals do not reach, in a Dask worker's thread."""
         while not self._over.wait(_BEAT):
-            if self._is_overdue:
+            if self._is_overdue():
                 ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(self._thread), ctypes.py_object(Overtime))
-
-
-class _Call:
-    """A call under watch."""
-
-    __slots__ = ("_watch",)
-
-    def __init__(self, watch: Watch) -> None:
-        self._watch = watch
-
-    def __enter__(self) -> None:
-        watch = self._watch
-        watch._map[0] = _BYTES[watch._side]
-        watch._since = time.monotonic()
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
-    ) -> None:
-        self._watch._since = None
-        self._watch._map[0] = _NOBODY
 
 
 def culprit(file: Path) -> Side | None:

@@ -1,173 +1,176 @@
-"""The run folder: everything that a run leaves, written so that it can be killed at any moment.
+"""A run's folder: begun empty, taken up again as the same run, written by one process at a time, killed at any moment.
 
-    run.json            the manifest
-    journal.jsonl       a line per finished episode
-    trajectories/       HDF5 segments while the run lasts, each complete from the moment it has its name
-    trajectories.h5     the segments as one file, once the run is finished
-    result.json         what `--json` prints, once the run is finished
+    run.json, match.json …    the manifest
+    journal.jsonl             a line per finished piece of work
+    result.json               once everything is done
 
-An episode is finished when a named segment holds it, with its record; the journal follows, and is mended from the
-segments when a run is taken up again. So a kill costs the last second's episodes and nothing else.
+Each kind of run says in a class of its own what it is called, and what else lies in its folder.
 """
 
 import contextlib
 import os
-import shutil
-import time
+from collections.abc import Hashable, Iterator, Mapping
 from pathlib import Path
-from typing import Self
+from typing import Any, ClassVar, Generic, Self, TypeVar
 
 import msgspec
 
-from airhockey.errors import ConfigurationError
-from airhockey.evaluator.runs import trajectories
-from airhockey.evaluator.runs.disk import JSON, begin_folder, disk_errors, lock_folder, replace_file, write_record
-from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, Manifest
+from airhockey import envs
+from airhockey.envs.disturbances import load_disturbances
+from airhockey.evaluator.runs import journal
+from airhockey.evaluator.runs.disk import begin_folder, disk_errors, lock_folder, write_record
+from airhockey.evaluator.runs.journal import Record
+from airhockey.evaluator.runs.manifest import (
+    Manifest,
+    check_same_run,
+    check_versions,
+    now,
+    option_of,
+    read_manifest,
+)
 
-TRAJECTORIES = "trajectories.h5"
-SEGMENT_SECONDS = 1.0  # how much work a kill may cost
-SEGMENT_EPISODES = 64  # how many trajectories wait in memory
+Options = TypeVar("Options")
 
 
-class RunFolder:
-    """A run's folder, opened for writing by one process at a time.
+class RunFolder(Generic[Options, Record]):
+    """A run's folder, opened for writing.
 
     Attributes:
+        name: The manifest's file name.
+        options_type, record_type: What the options and the journal's lines are.
+        manifest_type: `Manifest`, or a kind of it.
         path: The folder.
         manifest: What the run is.
-        records: Of the finished episodes.
-        trajectories: The file that there is once the run is finished.
+        records: Of the finished work.
     """
 
-    def __init__(self, path: Path, manifest: Manifest) -> None:
-        """Use `create` or `open`."""
+    name: ClassVar[str]
+    options_type: ClassVar[type]
+    record_type: ClassVar[type]
+    manifest_type: ClassVar[Any] = Manifest
+    manifest: Manifest[Options]
+
+    def __init__(self, path: Path, asked: Mapping[str, Any] | None = None) -> None:
+        """Use `begin`, `resume` or `open`."""
         self.path = path
-        self.manifest = manifest
-        self.trajectories = path / TRAJECTORIES
-        self._segments = path / "trajectories"
-        self._journal = path / "journal.jsonl"
         self._lock = lock_folder(path)
-        self._waiting: list[Episode] = []
-        self._flushed_at = 0.0
-        self._next_segment = 0
-        with disk_errors(path):
-            self.records = self._recover()
+        with self.released_on_error():
+            self.manifest = self.read(path)
+            if asked is not None:
+                check_same_run(path, self.manifest, asked)
+                check_versions(path, self.manifest.versions, self.versions())
+            with disk_errors(path):
+                self.records: list[Record] = self.recover()
 
     @classmethod
-    def create(cls, path: Path, manifest: Manifest) -> Self:
-        """Begin a run in a folder that does not exist or is empty.
+    def begin(cls, options: Options, path: Path, **more: Any) -> Self:
+        """Begin a run in a folder that does not exist or is empty; nothing is written when anything about it is wrong.
+
+        Args:
+            options: What is asked for.
+            path: The folder.
+            **more: Fields that only this kind of manifest has.
 
         Raises:
-            ConfigurationError: The folder holds something, or cannot be written.
+            ConfigurationError: An option has no meaning, or the folder holds something or cannot be written.
         """
-        begin_folder(path, "run.json", manifest)
-        return cls(path, manifest)
+        cls.check(options)
+        return cls.create(
+            path,
+            cls.manifest_type(
+                options=options,
+                profile=load_disturbances(option_of(options, "disturbances")),
+                versions=cls.versions(),
+                created=now(),
+                **more,
+            ),
+        )
+
+    @classmethod
+    def resume(cls, path: Path, asked: Mapping[str, Any] | None = None) -> Self:
+        """Take up a run that was interrupted.
+
+        Args:
+            path: Its folder.
+            asked: Options that the user repeated, by name; they must be the run's.
+
+        Raises:
+            ConfigurationError: There is no run, it is another than the one asked for, the software is, or another process
+                is at work on it.
+        """
+        cls.read(path)
+        return cls(path, asked or {})
+
+    @classmethod
+    def create(cls, path: Path, manifest: Manifest[Options]) -> Self:
+        """Begin what a manifest says; raises `ConfigurationError`."""
+        begin_folder(path, cls.name, manifest)
+        return cls(path)
 
     @classmethod
     def open(cls, path: Path) -> Self:
-        """Take up a run that was begun before.
+        """Take up a run whatever it is; raises `ConfigurationError`."""
+        cls.read(path)
+        return cls(path)
 
-        Raises:
-            ConfigurationError: There is none, or another process is at work on it.
-        """
-        return cls(path, read_manifest(path))
+    @classmethod
+    def read(cls, path: Path) -> Manifest[Options]:
+        """The manifest in a folder, see `read_manifest`."""
+        return read_manifest(path, cls.name, cls.options_type, cls.manifest_type)
+
+    @classmethod
+    def check(cls, options: Options) -> None:
+        """Find the mistakes in a run's options; raises `ConfigurationError`."""
+
+    @classmethod
+    def versions(cls) -> dict[str, str]:
+        """Of the software that results depend on."""
+        return envs.versions()
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let others have it."""
+        os.close(self._lock)
+
+    @contextlib.contextmanager
+    def released_on_error(self) -> Iterator[None]:
+        """Let others have it if the block fails."""
         try:
-            self.flush()
-        finally:
-            os.close(self._lock)
+            yield
+        except BaseException:
+            self.close()
+            raise
 
     @property
-    def done(self) -> set[Job]:
-        """The episodes that need not be played again."""
-        return {record.job for record in self.records}
+    def done(self) -> set[Hashable]:
+        """Keys of the work that need not be done again."""
+        return {record.key for record in self.records}
 
-    def add(self, episode: Episode) -> None:
-        """Keep an episode; it is finished at once, or with the others of its `SEGMENT_SECONDS`.
+    def recover(self) -> list[Record]:
+        """The records of the finished work; what a kill left half done goes away."""
+        records: list[Record] = journal.read_journal(self.path, self.record_type).records
+        journal.mend(self.path, records)
+        return records
 
-        Raises:
-            AirHockeyError: The disk is full or gone.
-        """
-        self._waiting.append(episode)
-        if time.monotonic() - self._flushed_at > SEGMENT_SECONDS or len(self._waiting) >= SEGMENT_EPISODES:
-            self.flush()
-
-    def flush(self) -> None:
-        """Finish the episodes added so far."""
-        if not self._waiting:
-            return
-        episodes, self._waiting = self._waiting, []
-        records = [episode.record for episode in episodes]
+    def keep(self, *records: Record) -> None:
+        """Keep records; they are on the disk when this returns, and what they tell of is finished."""
         with disk_errors(self.path):
-            self._segments.mkdir(exist_ok=True)
-            segment = self._segments / f"{self._next_segment:06d}.h5"
-            trajectories.write(segment.with_suffix(".part"), episodes)
-            segment.with_suffix(".part").rename(segment)
-            self._next_segment += 1
-            with self._journal.open("ab") as journal:
-                journal.write(JSON.encode_lines(records))
+            journal.append(self.path, records)
         self.records += records
-        self._flushed_at = time.monotonic()
 
-    def merge(self) -> None:
-        """Make one trajectory file of the segments, where that is not done."""
-        self.flush()
+    def change(self, options: Options) -> None:
+        """Replace the options of a run that may be extended."""
+        manifest = msgspec.structs.replace(self.manifest, options=options)
         with disk_errors(self.path):
-            if not self.trajectories.exists():
-                trajectories.merge(self._named_segments(), self.trajectories)
-            shutil.rmtree(self._segments, ignore_errors=True)
+            write_record(self.path / self.name, manifest)
+        self.manifest = manifest
 
     def keep_result(self, result: msgspec.Struct) -> None:
         """Leave the result beside what it was computed from."""
         with disk_errors(self.path):
             write_record(self.path / "result.json", result)
-
-    def _recover(self) -> list[EpisodeRecord]:
-        """The records of what is finished; the journal is made to say the same."""
-        if self.trajectories.exists():
-            records = trajectories.read_records(self.trajectories)
-        else:
-            records = [record for segment in self._named_segments() for record in self._recover_segment(segment)]
-        if records or self._journal.exists():
-            replace_file(self._journal, JSON.encode_lines(records))
-        return records
-
-    def _recover_segment(self, segment: Path) -> list[EpisodeRecord]:
-        """A segment's records; one that a power failure broke is put aside, and its episodes are played again."""
-        self._next_segment = int(segment.stem) + 1
-        try:
-            return trajectories.read_records(segment)
-        except (OSError, KeyError, msgspec.MsgspecError):
-            segment.rename(segment.with_suffix(".broken"))
-            return []
-
-    def _named_segments(self) -> list[Path]:
-        return sorted(self._segments.glob("*.h5"))
-
-
-def read_manifest(path: Path) -> Manifest:
-    """The manifest of the run in a folder.
-
-    Raises:
-        ConfigurationError: There is no run, or its manifest cannot be read.
-    """
-    try:
-        return msgspec.json.decode((path / "run.json").read_bytes(), type=Manifest)
-    except OSError:
-        raise ConfigurationError(f"there is no run in {str(path)!r}: it has no run.json") from None
-    except (msgspec.MsgspecError, ValueError) as error:
-        raise ConfigurationError(f"cannot read {str(path / 'run.json')!r}: {error}") from error
-
-
-def read_journal(path: Path) -> list[EpisodeRecord]:
-    """The records of a run's journal in the order in which episodes finished; a torn last line is left out."""
-    journal = path / "journal.jsonl"
-    records = []
-    for line in journal.read_bytes().splitlines() if journal.exists() else []:
-        with contextlib.suppress(msgspec.MsgspecError, UnicodeDecodeError):
-            records.append(msgspec.json.decode(line, type=EpisodeRecord))
-    return records

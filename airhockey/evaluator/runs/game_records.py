@@ -1,5 +1,6 @@
 """What a game is asked to be and what it leaves behind, as typed records that travel as JSON."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 import msgspec
@@ -150,6 +151,17 @@ class GameRecord(msgspec.Struct, frozen=True, kw_only=True):
     events: tuple[Event, ...]
 
     @property
+    def key(self) -> str:
+        """Names the game in its run."""
+        return self.job.key
+
+    @property
     def score(self) -> tuple[int, int]:
         """Points of home and away."""
         return self.home.points, self.away.points
+
+
+def in_order(records: Sequence[GameRecord], keys: Sequence[str]) -> list[GameRecord]:
+    """The records of these games, in this order; those not played yet are left out."""
+    by_key = {record.key: record for record in records}
+    return [by_key[key] for key in keys if key in by_key]

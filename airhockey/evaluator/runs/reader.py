@@ -5,23 +5,23 @@ A folder may belong to a run that is still being played, that was killed, that l
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import h5py
 import msgspec
 
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.match import MATCH, MatchManifest
+from airhockey.evaluator.match import MatchOptions
 from airhockey.evaluator.runs import trajectories
-from airhockey.evaluator.runs.folder import TRAJECTORIES, read_journal, read_manifest
-from airhockey.evaluator.runs.game_folder import read_game_manifest, read_games
 from airhockey.evaluator.runs.game_records import GameRecord, file_name
-from airhockey.evaluator.runs.records import EpisodeRecord, Job, Manifest
-from airhockey.evaluator.tournament import TOURNAMENT, TournamentManifest
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.evaluator.runs.manifest import MATCH, RUN, TOURNAMENT, Manifest, read_manifest
+from airhockey.evaluator.runs.records import EpisodeRecord, Job, Options
+from airhockey.evaluator.runs.trajectories import TRAJECTORIES
+from airhockey.evaluator.schedule import TournamentOptions
 
-RUN = "run.json"
 MANIFESTS = (RUN, MATCH, TOURNAMENT)
-AnyManifest = TypeVar("AnyManifest", bound=Manifest | MatchManifest | TournamentManifest)
+AnyOptions = TypeVar("AnyOptions")
 BROKEN = (
     OSError,
     LookupError,
@@ -36,7 +36,7 @@ BROKEN = (
 
 
 @dataclass
-class _Folder(Generic[AnyManifest]):
+class _Folder(Generic[AnyOptions]):
     """What every kind of folder has.
 
     Attributes:
@@ -46,7 +46,7 @@ class _Folder(Generic[AnyManifest]):
     """
 
     path: Path
-    manifest: AnyManifest | None = None
+    manifest: Manifest[AnyOptions] | None = None
     notes: list[str] = field(default_factory=list)
 
     @property
@@ -66,7 +66,7 @@ class _Folder(Generic[AnyManifest]):
 
 
 @dataclass
-class Run(_Folder[Manifest]):
+class Run(_Folder[Options]):
     """Episodes of tasks.
 
     Attributes:
@@ -94,7 +94,7 @@ class Run(_Folder[Manifest]):
 
 
 @dataclass
-class Games(_Folder[AnyManifest]):
+class Games(_Folder[AnyOptions]):
     """Games of a match or of a tournament.
 
     Attributes:
@@ -109,15 +109,15 @@ class Games(_Folder[AnyManifest]):
         return film if film.is_file() else None
 
 
-class Match(Games[MatchManifest]):
+class Match(Games[MatchOptions]):
     """Games of one pair of players."""
 
 
-class Tournament(Games[TournamentManifest]):
+class Tournament(Games[TournamentOptions]):
     """Games of everybody against everybody."""
 
 
-class Nothing(_Folder[Manifest]):
+class Nothing(_Folder[Options]):
     """A path at which there is nothing to report on; the notes say why."""
 
 
@@ -129,9 +129,9 @@ def open_source(path: Path) -> Source:
     if (path / RUN).exists() or any((path / name).exists() for name in (TRAJECTORIES, "trajectories")):
         return _usable(_open_run(path), path)
     if (path / MATCH).exists():
-        return _usable(_open_games(Match(path), MATCH, MatchManifest), path)
+        return _usable(_open_games(Match(path), MATCH, MatchOptions), path)
     if (path / TOURNAMENT).exists():
-        return _usable(_open_games(Tournament(path), TOURNAMENT, TournamentManifest), path)
+        return _usable(_open_games(Tournament(path), TOURNAMENT, TournamentOptions), path)
     if not path.exists():
         return Nothing(path, notes=["there is no such folder"])
     if not path.is_dir():
@@ -157,7 +157,7 @@ def _usable(source: Run | Match | Tournament, path: Path) -> Source:
 def _open_run(path: Path) -> Run:
     run = Run(path)
     try:
-        run.manifest = read_manifest(path)
+        run.manifest = read_manifest(path, RUN, Options)
     except (ConfigurationError, OSError) as error:
         run.notes.append(f"{_why(error, path / RUN)}; agent, seed and versions are unknown")
     by_job: dict[Job, EpisodeRecord] = {}
@@ -192,13 +192,14 @@ def _trajectory_files(run: Run) -> list[Path]:
 
 def _journal(run: Run) -> list[EpisodeRecord]:
     try:
-        records = read_journal(run.path)
-        lines = (run.path / "journal.jsonl").read_bytes().splitlines()
+        records, unreadable = read_journal(run.path, EpisodeRecord)
     except OSError as error:
         run.notes.append(f"cannot read journal.jsonl: {reason(error, run.path)}")
         return []
-    if len(records) < len(lines):
-        run.notes.append(f"{_count(len(lines) - len(records), 'line')} of journal.jsonl cannot be read")
+    if not (run.path / "journal.jsonl").exists():
+        run.notes.append("journal.jsonl is missing")
+    if unreadable:
+        run.notes.append(f"{_count(unreadable, 'line')} of journal.jsonl cannot be read")
     return records
 
 
@@ -214,24 +215,20 @@ def _check_complete(run: Run) -> None:
             run.notes.append(f"{env} is unfinished: {played} of {options.episodes} episodes are there")
 
 
-def _open_games(
-    games: Match | Tournament, name: str, kind: type[MatchManifest | TournamentManifest]
-) -> Match | Tournament:
+def _open_games(games: Match | Tournament, name: str, kind: type[Any]) -> Match | Tournament:
     try:
-        games.manifest = read_game_manifest(games.path, name, kind)
+        games.manifest = read_manifest(games.path, name, kind)
     except (ConfigurationError, OSError) as error:
         games.notes.append(f"{_why(error, games.path / name)}; options and versions are unknown")
     try:
-        games.records = read_games(games.path)
-        journal = games.path / "journal.jsonl"
-        lines = len(set(journal.read_bytes().splitlines())) if journal.exists() else 0
+        games.records, unreadable = read_journal(games.path, GameRecord)
     except OSError as error:
         games.notes.append(f"cannot read journal.jsonl: {reason(error, games.path)}")
         return games
     if not (games.path / "journal.jsonl").exists():
         games.notes.append("journal.jsonl is missing")
-    if len(games.records) < lines:
-        games.notes.append(f"{_count(lines - len(games.records), 'line')} of journal.jsonl cannot be read")
+    if unreadable:
+        games.notes.append(f"{_count(unreadable, 'line')} of journal.jsonl cannot be read")
     missing = [record.job.key for record in games.records if games.film(record) is None and record.steps]
     if missing:
         games.notes.append(

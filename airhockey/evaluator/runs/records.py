@@ -6,8 +6,6 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.envs.disturbances import Disturbances
-
 Trajectory = dict[str, NDArray[np.float64]]
 """One episode's arrays by name; `airhockey.evaluator.play.episode.Recorder.trajectory` says which."""
 
@@ -33,34 +31,16 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     """
 
     environments: tuple[str, ...]
-    agent: str = "thesis"
+    agent: str = "planner"
     episodes: int = 1000
     seed: int = 0
     disturbances: str = "ideal"
     interpolation_order: Order = "agent"
-    clock: Literal["wall", "cpu"] = "wall"
+    clock: Literal["wall", "cpu"] = "cpu"
     edition: str = "2023"
     isolate: Literal["none", "process", "sandbox"] = "none"
     patience: float = 60.0
     parameters: str | None = None
-
-
-class Manifest(msgspec.Struct, frozen=True, kw_only=True):
-    """`run.json`: written when a run begins; a resumed run must match it.
-
-    Attributes:
-        options: What was asked for.
-        profile: The disturbances themselves; a file of them may change while the run waits.
-        versions: Of the software that results depend on.
-        created: Local time, ISO 8601.
-        format: Of the run folder.
-    """
-
-    options: Options
-    profile: Disturbances
-    versions: dict[str, str]
-    created: str
-    format: int = 1
 
 
 class Job(msgspec.Struct, frozen=True):
@@ -105,6 +85,11 @@ class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
         """The job that this record answers."""
         return Job(self.env, self.index)
 
+    @property
+    def key(self) -> Job:
+        """Names the episode in its run."""
+        return self.job
+
 
 class Episode(msgspec.Struct, frozen=True):
     """A played episode: what the journal gets and what the trajectory file gets."""
@@ -128,6 +113,7 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
         success: Share of episodes, 0 … 1.
         penalty: Penalty points, summed over the episodes.
         violations: Constraint name -> number of episodes that violated it.
+        late: Number of episodes that cost points for computation time.
         agent_errors: Number of episodes that the agent failed.
     """
 
@@ -140,8 +126,14 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
     penalty: float
     deployability: str
     violations: dict[str, int]
+    late: int
     computation_time: RunTime
     agent_errors: int
+
+    @property
+    def tasks(self) -> "tuple[TaskResult, ...]":
+        """The results of the single tasks: this one."""
+        return (self,)
 
 
 class RunResult(msgspec.Struct, frozen=True, kw_only=True):
@@ -157,3 +149,8 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
     deployability: str
     phase: str | None
     score: float | None
+
+    @property
+    def tasks(self) -> tuple[TaskResult, ...]:
+        """The results of the single tasks."""
+        return self.results

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Trajectory
 
+TRAJECTORIES = "trajectories.h5"  # the file of a finished run
 PER_OBSERVATION = ("observations", "true_observations")
 CHUNK_ROWS = 1024
 TABLE = np.dtype(

@@ -10,7 +10,7 @@ from airhockey.agents.atacom.skill import DEFEND, HOME_SKILL, Situation
 from airhockey.agents.estimation.motion import puck_motion
 from airhockey.agents.table import CONTACT, HALF_LENGTH, HOME, to_table
 from airhockey.envs.gymnasium import AirHockeyEnv
-from airhockey.envs.rewards import reward_for
+from airhockey.envs.tasks import reward_for
 from airhockey.learning.sac.skill_env import SkillEnv
 
 Array = NDArray[np.float64]

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from airhockey.envs.kernel.controller import filter_velocity, limit_set_point, motor_torque
+from airhockey.envs.kernel.controller import add_feedback, filter_velocity, limit_set_point, new_controller
+from airhockey.envs.kernel.dynamics import inverse_dynamics
 from airhockey.envs.kernel.kinematics import link_rotations
 from airhockey.envs.specs import IIWA
 
@@ -65,9 +66,11 @@ def test_the_torque_is_proportional_derivative_and_feed_forward(robot):
     n = robot.n_joints
     set_points = [np.stack(joints) for joints in random_joints(robot, 12)]
     for set_point, (position, velocity, _) in zip(set_points, random_joints(robot, 13), strict=True):
-        rotations, forces, torque = np.empty((n, 3, 3)), np.empty((n, 6)), np.empty(n)
-        link_rotations(arm, position, rotations)
-        motor_torque(arm, rotations, set_point, position, velocity, forces, torque)
+        controller = new_controller(1, n)
+        link_rotations(arm, position, controller.rotations)
+        torque = controller.torque
+        inverse_dynamics(arm, controller.rotations, velocity, set_point[2], controller.forces, torque)
+        add_feedback(arm, set_point, position, velocity, torque)
         data.qpos[:], data.qvel[:] = position, velocity
         mujoco.mj_forward(model, data)
         mass = np.zeros((n, n))

@@ -11,7 +11,7 @@ from games import course, events_of, film, play_one
 
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.engines.cluster import Cluster
-from airhockey.evaluator.engines.engine import Processes
+from airhockey.evaluator.engines.processes import Processes
 from airhockey.evaluator.match import (
     MatchOptions,
     MatchResult,
@@ -20,9 +20,10 @@ from airhockey.evaluator.match import (
     play_match,
     resume_match,
 )
-from airhockey.evaluator.runs.game_folder import GameFolder, read_games
-from airhockey.evaluator.runs.game_records import GameOptions
+from airhockey.evaluator.runs.game_folder import GameFolder
+from airhockey.evaluator.runs.game_records import GameOptions, GameRecord
 from airhockey.evaluator.runs.game_trajectories import read_film
+from airhockey.evaluator.runs.journal import read_journal
 from submissions import make_submission
 
 STEPS = 120
@@ -37,7 +38,10 @@ def options(tmp_path_factory: pytest.TempPathFactory) -> MatchOptions:
 
 
 def courses(folder: Path) -> dict[str, Any]:
-    return {record.job.key: (course(record), film(folder, record.job.key)) for record in read_games(folder)}
+    return {
+        record.job.key: (course(record), film(folder, record.job.key))
+        for record in read_journal(folder, GameRecord).records
+    }
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +85,7 @@ def test_taken_up_after_ctrl_c_in_the_order_that_is_left(options: MatchOptions, 
         )
         with pytest.raises(KeyboardInterrupt):
             play_match(folder, None, stop)
-    assert [record.job.key for record in read_games(tmp_path / "run")] == ["0", "1"]
+    assert [record.job.key for record in read_journal(tmp_path / "run", GameRecord).records] == ["0", "1"]
     play_match(resume_match(tmp_path / "run"))
     assert courses(tmp_path / "run") == straight
     played: list[Any] = []
@@ -93,7 +97,7 @@ def test_a_line_that_a_kill_cut_short_is_played_again(folder: Path, straight: An
     copy = shutil.copytree(folder, tmp_path / "copy")
     journal = copy / "journal.jsonl"
     journal.write_bytes(journal.read_bytes()[:-40])
-    assert len(read_games(copy)) == 3
+    assert len(read_journal(copy, GameRecord).records) == 3
     play_match(resume_match(copy))
     assert courses(copy) == straight
 
@@ -103,7 +107,7 @@ def test_a_match_seen_from_home(options: MatchOptions, folder: Path) -> None:
     jobs = match_jobs(options)
     assert [job.home == options.home for job in jobs] == [True, False, True, False]
     result = play_match(resume_match(folder))
-    records = {record.job.key: record for record in read_games(folder)}
+    records = {record.job.key: record for record in read_journal(folder, GameRecord).records}
     for k, game in enumerate(result.games):
         record = records[str(k)]
         mine, theirs = (record.away, record.home) if k % 2 else (record.home, record.away)
@@ -176,7 +180,7 @@ def test_memory_is_flat_over_a_game() -> None:
         return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE") / 1e6
 
     from airhockey.envs.disturbances import load_disturbances
-    from airhockey.evaluator.play.game_player import GamePlayer
+    from airhockey.evaluator.play.game import GamePlayer
     from airhockey.evaluator.runs.game_records import GameJob
 
     play_one("hold", "hold", 50)

@@ -17,11 +17,12 @@ from games import course
 
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.engines.cluster import Cluster
-from airhockey.evaluator.engines.engine import Processes
+from airhockey.evaluator.engines.processes import Processes
+from airhockey.evaluator.entries import Entry
 from airhockey.evaluator.judging.standings import Standings
-from airhockey.evaluator.runs.game_folder import read_games
-from airhockey.evaluator.runs.game_records import GameOptions
-from airhockey.evaluator.schedule import Entry, TournamentOptions
+from airhockey.evaluator.runs.game_records import GameOptions, GameRecord
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.evaluator.schedule import TournamentOptions
 from airhockey.evaluator.tournament import begin_tournament, play_tournament, read_standings, resume_tournament
 from submissions import make_submission
 
@@ -60,7 +61,7 @@ def outcome(folder: Path) -> Any:
     """Standings, as computed from the folder and as left in it, and every game's course."""
     table = read_standings(folder)[1]
     assert msgspec.json.decode((folder / "standings.json").read_bytes(), type=Standings) == table
-    return table, {record.job.key: course(record) for record in read_games(folder)}
+    return table, {record.job.key: course(record) for record in read_journal(folder, GameRecord).records}
 
 
 def typed(entries: tuple[Entry, ...]) -> list[str]:
@@ -71,7 +72,7 @@ def killed_after(count: int, folder: Path, command: list[str]) -> None:
     """Run a command and kill it, without a word, once the folder holds so many games."""
     with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
         end = time.monotonic() + 60.0
-        while len(read_games(folder)) < count:
+        while len(read_journal(folder, GameRecord).records) < count:
             assert process.poll() is None and time.monotonic() < end
             time.sleep(0.01)
         process.kill()
@@ -82,14 +83,14 @@ def test_killed_twice_resumed_and_extended(entries: tuple[Entry, ...], straight:
     out = ["--out", str(folder)]
     begin = [*HOCKEY, *typed(entries[:4]), "--steps", str(STEPS), "--seed", "2", "--isolate", "none", *out]
     killed_after(2, folder, begin)
-    killed_after(len(read_games(folder)) + 2, folder, [*HOCKEY, "--resume", *out])
-    assert len(read_games(folder)) < 12
-    before = {record.job.key: record for record in read_games(folder)}
+    killed_after(len(read_journal(folder, GameRecord).records) + 2, folder, [*HOCKEY, "--resume", *out])
+    assert len(read_journal(folder, GameRecord).records) < 12
+    before = {record.job.key: record for record in read_journal(folder, GameRecord).records}
     done = subprocess.run([*HOCKEY, "--resume", *out, "--json", *typed(entries[4:])], check=False, capture_output=True)
     assert done.returncode == 3  # an entry failed games
     assert outcome(folder) == straight
     assert msgspec.json.decode(done.stdout, type=Standings) == straight[0]
-    after = {record.job.key: record for record in read_games(folder)}
+    after = {record.job.key: record for record in read_journal(folder, GameRecord).records}
     assert len(after) == 20
     assert {key: after[key] for key in before} == before  # only the missing games were played
 
@@ -100,7 +101,7 @@ def test_on_dask_with_a_worker_killed(entries: tuple[Entry, ...], straight: Any,
 
     def kill_a_worker(*_: Any) -> None:
         """After the second game: with two workers, at least one of them is in the middle of another."""
-        if len(read_games(tmp_path / "run")) == 2:
+        if len(read_journal(tmp_path / "run", GameRecord).records) == 2:
             victim = sorted(descendants(os.getpid()))[-1]
             os.kill(victim, signal.SIGKILL)
             killed.append(victim)

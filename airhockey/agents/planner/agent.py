@@ -23,7 +23,6 @@ from airhockey.agents.planner.skills.repel import Repel
 from airhockey.agents.planner.skills.smash import Smash
 from airhockey.agents.planner.tactics import choose
 from airhockey.agents.skill import Situation, Skill
-from airhockey.agents.table import to_table
 
 WARM_UP_STEPS = 60
 """Per skill and puck."""
@@ -173,5 +172,5 @@ class PlannerAgent(AgentBase):
         return "smash" if self._smash.scout(situation) is not None else None
 
     def _look(self, observation: Array) -> Situation:
-        puck, opponent = self._watch.see(observation, to_table(self._controller.tip_position()))
+        puck, _, opponent = self._watch.see(observation, self._controller.tip_position())
         return Situation(puck, self._predictor, self._controller, opponent, self._step, self._dt)

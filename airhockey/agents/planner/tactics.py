@@ -43,8 +43,7 @@ def choose(
         if now in ("defend", "repel") and not finished:
             return now
         return answer if situation.puck.speed > FAST else "defend"
-    apart = float(np.hypot(*(puck - situation.tip))) > CONTACT + APART
-    if stroke is not None and (apart or now != "prepare"):
+    if stroke is not None and (now != "prepare" or float(np.hypot(*(puck - situation.tip))) > CONTACT + APART):
         return stroke
     if now == "prepare" and not finished and puck[0] < OURS:
         return "prepare"

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from airhockey.envs import scene
 from airhockey.envs.copying import Copyable
+from airhockey.envs.editions import Scene
 from airhockey.envs.kernel.arm import Arm, arm_from_model
 from airhockey.envs.kernel.control_step import BAD_ACTION, DONE, Players, control_step
 from airhockey.envs.kernel.controller import Controller, filter_velocity, new_controller
@@ -46,6 +47,7 @@ class Simulation(Copyable):
         orders: Interpolation order of each robot, as compiled code wants it. Shape (n_robots,).
         moving_opponent: Robot 2 follows the figure of eight.
         visual: Draw the arms' links.
+        edition_scene: What is particular to the edition's scene.
 
     Attributes:
         model, data: MuJoCo's. Changing them changes the simulation.
@@ -61,9 +63,10 @@ class Simulation(Copyable):
         orders: NDArray[np.int64],
         moving_opponent: bool = False,
         visual: bool = False,
+        edition_scene: Scene | None = None,
     ) -> None:
         self.robot, self.n_robots = robot, n_robots
-        self.model = scene.game_model(robot, n_robots, visual)
+        self.model = scene.game_model(robot, n_robots, visual, edition_scene)
         self.robot_model = scene.robot_model(robot)
         data = mujoco.MjData(self.model)
         self.arm: Arm = arm_from_model(robot, self.robot_model)

@@ -65,6 +65,7 @@ def hockey() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; an error that the user can mend is one line and exit status 2."""
+    os.environ["PYTHONSAFEPATH"] = "1"  # no child of ours imports from the present folder, which may be anybody's
     try:
         status = hockey.main(arguments, prog_name="hockey", standalone_mode=False)
     except click.ClickException as error:

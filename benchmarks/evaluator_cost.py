@@ -16,12 +16,12 @@ from collections.abc import Callable, Generator, Iterable
 from pathlib import Path
 from typing import Any
 
-from airhockey.evaluator.workers import ONE_THREAD
+from airhockey.evaluator.engines.workers import ONE_THREAD
 
 os.environ.update(ONE_THREAD)
 
 from airhockey.evaluator import Engine, InProcess, Options, Processes, begin, evaluate
-from airhockey.evaluator.records import Job
+from airhockey.evaluator.runs.records import Job
 
 WARM_UP = 10**6  # an index that no run gets to
 
@@ -36,12 +36,13 @@ class Watched(InProcess):
     def run(self, function: Any, jobs: Iterable[Any]) -> Generator[tuple[Any, Any], None, None]:
         """Play one episode to warm up, then start to count."""
         function(Job(self.env, WARM_UP))
-        setting = function._setting_for(self.env)
+        rollout = function.open(Job(self.env, WARM_UP))
+        (seat,) = rollout.seats
         for owner, name, kind in (
-            (setting.env, "reset", "simulation"),
-            (setting.env, "step", "simulation"),
-            (setting.agent, "episode_start", "agent"),
-            (setting.agent, "draw_action", "agent"),
+            (rollout.env, "reset", "simulation"),
+            (rollout.env, "step", "simulation"),
+            (seat.agent, "episode_start", "agent"),
+            (seat.agent, "act", "agent"),
         ):
             setattr(owner, name, self._timed(getattr(owner, name), kind))
         self.began = time.perf_counter()

@@ -13,8 +13,8 @@ from typing import Any
 
 from airhockey import envs
 from airhockey.evaluator.isolation.build import build_agent
-from airhockey.evaluator.isolation.launch import why_no_sandbox
 from airhockey.evaluator.isolation.modes import Mode
+from airhockey.evaluator.isolation.sandbox import why_no_sandbox
 
 ROUND = 100
 
@@ -54,7 +54,7 @@ def measure(env: Any, agent: str, modes: tuple[Mode, ...], steps: int) -> dict[M
                 observation = env.reset(seed=len(times[mode]))
                 for _ in range(ROUND):
                     began = time.perf_counter()
-                    action = player.draw_action(observation)
+                    action = player.act(observation)
                     times[mode].append(time.perf_counter() - began)
                     observation, *_ = env.step(action)
     finally:

@@ -1,6 +1,6 @@
 """A whole game against the bare engine, in one run, on one core: time, and memory over the game.
 
-    python benchmarks/match_rate.py [--home baseline] [--away thesis] [--steps 45000]
+    python benchmarks/match_rate.py [--home planner] [--away thesis] [--steps 45000]
 
 It is compared with bare `mj_step` for the same number of substeps on the same scene, measured in blocks between the blocks of
 the game, so that whatever else the machine does disturbs both alike; and once more in CPU time. The target is a ratio ≤ 3.
@@ -14,8 +14,8 @@ import mujoco
 
 from airhockey import envs
 from airhockey.envs.disturbances import load_disturbances
-from airhockey.evaluator.games.player import GamePlayer
-from airhockey.evaluator.games.records import GameJob, GameOptions, Status
+from airhockey.evaluator.play.game import GamePlayer
+from airhockey.evaluator.runs.game_records import GameJob, GameOptions, Status
 
 BLOCK = 500
 
@@ -55,7 +55,7 @@ def _resident() -> int:
 def main() -> None:
     """Play one game and print both times and the memory at its quarters."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--home", default="baseline")
+    parser.add_argument("--home", default="planner")
     parser.add_argument("--away", default="thesis")
     parser.add_argument("--steps", type=int, default=45000)
     options = parser.parse_args()

@@ -1,6 +1,6 @@
 """What a tournament costs here, and elsewhere: a game, the scheduler, the bookkeeping; the numbers of docs/scaling.md.
 
-python benchmarks/tournament_cost.py game [--home baseline] [--away thesis] [--steps 5000]
+python benchmarks/tournament_cost.py game [--home planner] [--away thesis] [--steps 5000]
 python benchmarks/tournament_cost.py engines [--games 60] [--steps 100] [--workers 2]
 python benchmarks/tournament_cost.py bookkeeping [--entries 16]
 """
@@ -17,14 +17,15 @@ import msgspec
 import numpy as np
 
 from airhockey.envs.disturbances import load_disturbances
-from airhockey.evaluator.cluster import Cluster
-from airhockey.evaluator.engines import Engine, InProcess, Processes
-from airhockey.evaluator.games.folder import GameFolder
-from airhockey.evaluator.games.player import Game, GamePlayer
-from airhockey.evaluator.games.records import GameJob, GameOptions, GameRecord
-from airhockey.evaluator.games.schedule import Entry, TournamentOptions, schedule
-from airhockey.evaluator.games.standings import write_standings
-from airhockey.evaluator.games.tournament import TOURNAMENT, TournamentManifest, begin_tournament
+from airhockey.evaluator.engines.cluster import Cluster
+from airhockey.evaluator.engines.engine import Engine, InProcess
+from airhockey.evaluator.engines.processes import Processes
+from airhockey.evaluator.entries import Entry
+from airhockey.evaluator.judging.standings import write_standings
+from airhockey.evaluator.play.game import Game, GamePlayer
+from airhockey.evaluator.runs.game_records import GameJob, GameOptions, GameRecord
+from airhockey.evaluator.schedule import TournamentOptions, schedule
+from airhockey.evaluator.tournament import TournamentFolder, begin_tournament
 
 WHOLE = 45000
 ENTRIES = (4, 8, 16, 32)
@@ -120,7 +121,7 @@ def bookkeeping(options: argparse.Namespace) -> None:
     film = walk.astype(np.float32)
     print(f"schedule of {options.entries} entries: {len(jobs)} games, {1e3 * seconds(lambda: schedule(plan)):.1f} ms")
     with tempfile.TemporaryDirectory() as place:
-        folder: GameFolder[TournamentManifest] = begin_tournament(plan, Path(place) / "run")
+        folder = begin_tournament(plan, Path(place) / "run")
         with folder:
             record: GameRecord = msgspec.structs.replace(template.record, job=jobs[0])
             kept = seconds(lambda: folder.add(Game(record, film)))
@@ -132,7 +133,7 @@ def bookkeeping(options: argparse.Namespace) -> None:
         with folder:
             for one in itertools.islice(records, len(records) - 1):
                 folder.add(Game(one, film[:0]))
-        again = seconds(lambda: GameFolder.open(Path(place) / "run", TOURNAMENT, TournamentManifest).close())
+        again = seconds(lambda: TournamentFolder.open(Path(place) / "run").close())
     print(f"to keep a whole game: {kept:.2f} s, {size:.1f} MB of film")
     print(f"to compute and write the standings after the last game: {1e3 * last:.0f} ms")
     print(f"to take up the tournament before its last game: {1e3 * again:.0f} ms")
@@ -143,7 +144,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     what = parser.add_subparsers(required=True)
     one = what.add_parser("game")
-    one.add_argument("--home", default="baseline")
+    one.add_argument("--home", default="planner")
     one.add_argument("--away", default="thesis")
     one.add_argument("--steps", type=int, default=5000)
     one.set_defaults(measure=game)

@@ -13,7 +13,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from airhockey.evaluator.workers import ONE_THREAD
+from airhockey.evaluator.engines.workers import ONE_THREAD
 
 os.environ.update(ONE_THREAD)
 
@@ -21,8 +21,8 @@ import numpy as np
 
 from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.evaluator import InProcess, Options, begin
-from airhockey.evaluator.player import Player
-from airhockey.evaluator.records import Job
+from airhockey.evaluator.play.episode import EpisodePlayer
+from airhockey.evaluator.runs.records import Job
 from airhockey.learning.pgpe import training
 from airhockey.learning.pgpe.records import Iteration, Settings
 from airhockey.learning.pgpe.trainable import names_of, ranges, read
@@ -40,7 +40,7 @@ class Evaluation:
     def __init__(self, options: Options, path: Path, portion: int) -> None:
         self.rates: list[float] = []
         self._folder, self._portion, self._next = begin(options, path), portion, 0
-        self._player = Player(options, self._folder.manifest.profile)
+        self._player = EpisodePlayer(options, self._folder.manifest.profile)
         self._env = options.environments[0]
 
     def go_on(self) -> None:
@@ -71,7 +71,8 @@ def measure(robot: str, task: str, rounds: int, candidates: int, episodes: int) 
     )
     trained: list[float] = []
     with tempfile.TemporaryDirectory() as folder:
-        options = Options(environments=(f"{robot}-{task}",), episodes=candidates * episodes * (rounds + WARM_UP))
+        count = candidates * episodes * (rounds + WARM_UP)
+        options = Options(environments=(f"{robot}-{task}",), agent="thesis", episodes=count)
         evaluation = Evaluation(options, Path(folder) / "evaluation", candidates * episodes)
         began = time.process_time()
 

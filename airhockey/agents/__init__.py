@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from airhockey.agents.base import AgentBase
-    from airhockey.agents.registry import AGENTS, AgentEntry, build_agent
+    from airhockey.agents.build import build_agent
+    from airhockey.agents.registry import AGENTS, AgentEntry
 
 __all__ = ["AGENTS", "AgentBase", "AgentEntry", "build_agent"]
 
@@ -19,7 +20,7 @@ _HOMES = {
     "AGENTS": "airhockey.agents.registry",
     "AgentBase": "airhockey.agents.base",
     "AgentEntry": "airhockey.agents.registry",
-    "build_agent": "airhockey.agents.registry",
+    "build_agent": "airhockey.agents.build",
 }
 
 

@@ -8,7 +8,6 @@ that a submission written for one runs on the other.
 import abc
 import copy
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
@@ -61,13 +60,6 @@ class AgentBase(abc.ABC):
         Returns:
             Joint command for `interpolation_order`; for order 3 position [rad] and velocity [rad]/[s]. Shape (2, n).
         """
-
-    @classmethod
-    def load_agent(cls, path: str | Path, env_info: Mapping[str, Any], agent_id: int = 1) -> "AgentBase":
-        """Build the agent of a submission folder (see `airhockey.agents.registry`)."""
-        from airhockey.agents.registry import build_agent
-
-        return build_agent(path, env_info, agent_id)
 
     def episode_start(self) -> None:
         """Called by the evaluator when a serve begins."""

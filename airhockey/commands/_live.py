@@ -12,8 +12,8 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from airhockey.evaluator.games.records import GameRecord, Status
-from airhockey.evaluator.games.watch import live_games
+from airhockey.evaluator.play.watchdog import live_games
+from airhockey.evaluator.runs.game_records import GameRecord, Status
 
 STARTING = "starting; the first time on a machine, the simulator is compiled"
 CONTROL_PERIOD = 0.02  # [s]
@@ -50,7 +50,7 @@ class View:
     """What the user sees of the games.
 
     Attributes:
-        console: To print what shall stay.
+        console: To print what shall stay; quiet where nothing is shown.
     """
 
     console: Console
@@ -63,8 +63,8 @@ class View:
 
 
 @contextlib.contextmanager
-def games_live(folder: Path, games: int, played: int, quiet: bool) -> Iterator[View | None]:
-    """Show how games go while the block runs; gives None where nothing is shown.
+def of_games(folder: Path, games: int, played: int, quiet: bool) -> Iterator[View]:
+    """Show how games go while the block runs.
 
     Args:
         folder: Where games in progress are shown (`watch.live_games`).
@@ -72,11 +72,11 @@ def games_live(folder: Path, games: int, played: int, quiet: bool) -> Iterator[V
         played: How many are played already.
         quiet: Show nothing.
     """
-    if quiet:
-        yield None
-        return
-    console = Console(stderr=True, highlight=False)
+    console = Console(stderr=True, highlight=False, quiet=quiet)
     progress = Progress(games, played, played, time.monotonic())
+    if quiet:
+        yield View(console, progress)
+        return
     if console.is_terminal:
         with Live(get_renderable=lambda: _shown(live_games(folder), progress), console=console, transient=True):
             yield View(console, progress)

@@ -4,17 +4,26 @@ import contextlib
 import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from typing import Protocol
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
-from airhockey.evaluator.records import EpisodeRecord, Options
+from airhockey.evaluator.runs.records import EpisodeRecord, Options
 
 OnEpisode = Callable[[EpisodeRecord], None]
 STARTING = "starting; the first time on a machine, the simulator is compiled"
 LINES = 10  # per task, where there is no terminal ...
 SILENCE = 30.0  # [s] ... and one after this long anyway
+
+
+class Tell(Protocol):
+    """Says how far a training is."""
+
+    def __call__(self, line: str | None = None, completed: int | None = None) -> None:
+        """A line for the table, or how much is done."""
 
 
 @dataclass
@@ -39,7 +48,7 @@ class Tally:
 
 
 @contextlib.contextmanager
-def progress(options: Options, finished: Iterable[EpisodeRecord], quiet: bool) -> Iterator[OnEpisode | None]:
+def of_episodes(options: Options, finished: Iterable[EpisodeRecord], quiet: bool) -> Iterator[OnEpisode | None]:
     """Show how far a run is while the block runs; call what it gives with every record.
 
     Args:
@@ -55,11 +64,70 @@ def progress(options: Options, finished: Iterable[EpisodeRecord], quiet: bool) -
         tallies[record.env].add(record)
     console = Console(stderr=True)
     if console.is_terminal:
-        with _bar(console) as bar:
+        with _bar(console, _Rate(), more=TextColumn("{task.fields[tally]}")) as bar:
             yield _on_bar(bar, tallies, options.episodes)
     else:
         console.print(STARTING, highlight=False, soft_wrap=True)
         yield _in_lines(console, tallies, options.episodes)
+
+
+@contextlib.contextmanager
+def of_training(head: str, what: str, total: int, done: int, quiet: bool) -> Iterator[Tell]:
+    """Show a table that grows and, on a terminal, a bar; call what it gives with a line, or with how much is done.
+
+    Args:
+        head: Above the table.
+        what: The bar counts.
+        total, done: How many there are in all, and already.
+        quiet: Show nothing.
+    """
+    console = Console(stderr=True, quiet=quiet)
+    console.print(head, highlight=False, soft_wrap=True)
+    shown = console.is_terminal and not quiet
+    with _bar(console) if shown else contextlib.nullcontext() as bar:
+        task = bar.add_task(what, total=total, completed=done) if bar is not None else None
+
+        def tell(line: str | None = None, completed: int | None = None) -> None:
+            if line is not None:
+                console.print(line, highlight=False, soft_wrap=True)
+            if bar is not None and task is not None and completed is not None:
+                bar.update(task, completed=min(completed, total))
+
+        yield tell
+
+
+@contextlib.contextmanager
+def of_frames(quiet: bool) -> Iterator[Callable[[int, int], None] | None]:
+    """Show how far a film is; call what it gives with the frames that are done, and with how many there will be."""
+    if quiet:
+        yield None
+        return
+    console = Console(stderr=True)
+    if console.is_terminal:
+        with _bar(console, transient=True) as bar:
+            task = bar.add_task("rendering", total=None)
+            yield lambda done, expected: bar.update(task, completed=done, total=expected)
+        return
+    said = 0
+
+    def in_lines(done: int, expected: int) -> None:
+        nonlocal said
+        if LINES * done // expected > said:
+            said = LINES * done // expected
+            console.print(f"rendered {done}/{expected} frames", highlight=False)
+
+    yield in_lines
+
+
+@contextlib.contextmanager
+def of_pages(quiet: bool) -> Iterator[Callable[[str], None]]:
+    """Show what is being done: in one changing line on a terminal, in lines elsewhere."""
+    console = Console(stderr=True, quiet=quiet)
+    if console.is_terminal and not quiet:
+        with console.status("starting") as status:
+            yield lambda what: status.update(escape(what))
+    else:
+        yield lambda what: console.print(what, markup=False, highlight=False, soft_wrap=True)
 
 
 class _Rate(ProgressColumn):
@@ -70,16 +138,12 @@ class _Rate(ProgressColumn):
         return Text("" if speed is None else f"{speed:.1f}/s")
 
 
-def _bar(console: Console) -> Progress:
-    return Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        _Rate(),
-        TimeRemainingColumn(),
-        TextColumn("{task.fields[tally]}"),
-        console=console,
-    )
+def _bar(
+    console: Console, *columns: ProgressColumn, more: ProgressColumn | None = None, transient: bool = False
+) -> Progress:
+    left = [TimeRemainingColumn()] if more is None else [TimeRemainingColumn(), more]
+    start = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn()
+    return Progress(*start, *columns, *left, console=console, transient=transient)
 
 
 def _on_bar(bar: Progress, tallies: dict[str, Tally], episodes: int) -> OnEpisode:

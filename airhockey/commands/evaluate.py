@@ -1,12 +1,15 @@
 """`hockey evaluate`: an agent on the challenge's tasks, judged by the challenge's rules."""
 
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import rich_click as click
 
 from airhockey.commands import HELP_PAGE
-from airhockey.commands._isolation import isolation_options
-from airhockey.commands._options import cluster_option, typed_options
+from airhockey.commands import _options as common
+
+if TYPE_CHECKING:
+    from airhockey.evaluator import Options
 
 
 @click.command()
@@ -18,14 +21,12 @@ from airhockey.commands._options import cluster_option, typed_options
     show_default=True,
     help="What to play.",
 )
-@click.option("--robot", type=click.Choice(["7dof", "3dof"]), default="7dof", show_default=True, help="Who plays it.")
-@click.option("--env", metavar="NAME", help="Task and robot in one name, as in 7dof-prepare.")
+@common.options(common.robot, common.env)
 @click.option(
     "--agent",
     metavar="NAME|PATH|tcp://…",
-    default="thesis",
-    show_default=True,
-    help="One of `hockey agents`, the folder or archive of a submission, or tcp://HOST:PORT.",
+    help="One of `hockey agents`, the folder or archive of a submission, or tcp://HOST:PORT.  "
+    "[default: planner; thesis where --parameters are given]",
 )
 @click.option(
     "--parameters",
@@ -33,34 +34,15 @@ from airhockey.commands._options import cluster_option, typed_options
     help="Parameters of the rule-based player: tuned, thesis, or a YAML file, as `hockey train pgpe` leaves it.",
 )
 @click.option("--episodes", type=click.IntRange(min=1), default=1000, show_default=True, help="Episodes of each task.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the whole run.")
-@click.option("--jobs", type=click.IntRange(min=1), help="Processes that play.  [default: one per CPU]")
-@cluster_option
-@click.option(
-    "--disturbances",
-    metavar="NAME|PATH",
-    default="ideal",
-    show_default=True,
-    help="Profile ideal, server or harsh, or a YAML file.",
-)
+@common.options(common.seed, common.jobs, common.cluster, common.disturbances)
 @click.option(
     "--interpolation-order",
     type=click.Choice(["1", "2", "3", "4", "5", "-1", "none"]),
     help="How actions become set-points.  [default: what the agent wants]",
 )
-@isolation_options
-@click.option("--out", metavar="FOLDER", help="Run folder.  [default: a new one under runs/]")
-@click.option("--resume", is_flag=True, help="Continue the run in --out; its options need not be repeated.")
-@click.option(
-    "--clock",
-    type=click.Choice(["wall", "cpu"]),
-    default="wall",
-    show_default=True,
-    help="What the agent's computation time is measured with; cpu does not mind a busy machine.",
-)
+@common.options(*common.PLAY, common.python, common.clock)
 @click.option("--official-dataset", is_flag=True, help="Also write the files of an official evaluation.")
-@click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object, and nothing else.")
-@click.option("--quiet", is_flag=True, help="No progress, only the result.")
+@common.options(*common.RUN, common.as_json)
 @click.pass_context
 def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
     """Evaluate an agent: success, violations, penalty and computation time over many episodes.
@@ -72,15 +54,80 @@ def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
 
     \b
     hockey evaluate --task prepare
-    hockey evaluate --task all --disturbances server --clock cpu
+    hockey evaluate --task all --disturbances server
     hockey evaluate --env 3dof-hit --agent submissions/my_agent --episodes 100 --jobs 1
-    hockey evaluate --resume --out runs/7dof-prepare-thesis-s0
+    hockey evaluate --resume --out runs/7dof-prepare-planner-s0
     """
-    typed = typed_options(ctx, given)
+    typed = common.typed_options(ctx, given)
     if given["env"] is not None and typed & {"task", "robot"}:
         raise click.UsageError("--env names task and robot already: leave out --task and --robot")
-    if given["resume"] and given["out"] is None:
-        raise click.UsageError("--resume needs the run's folder: --out FOLDER")
-    from airhockey.commands._evaluation import run
+    from airhockey.commands import _progress, _tables
+    from airhockey.commands._session import AGENT_FAILED, Session
+    from airhockey.evaluator import evaluation
+    from airhockey.evaluator.official import write_official
 
-    ctx.exit(run(given, typed))
+    typed = {"environments" if name in ("task", "robot", "env") else name for name in typed}
+    session, options = Session("evaluate", given, typed), _options(given)
+    engine = session.engine()
+    folder = session.open(options, _name(options, given), evaluation.begin, evaluation.resume, (options.agent,))
+    options = folder.manifest.options
+
+    def play(on_episode: evaluation.OnEpisode | None) -> evaluation.Result:
+        result = evaluation.evaluate(folder, engine, on_episode)
+        if given["official_dataset"]:
+            write_official(folder.path, result)
+        return result
+
+    def show(result: evaluation.Result) -> int:
+        session.print(folder, result, lambda: _tables.print_result(result, folder))
+        return AGENT_FAILED if any(task.agent_errors for task in result.tasks) else 0
+
+    progress = _progress.of_episodes(options, folder.records, session.quiet)
+    ctx.exit(session.run(folder, f"{len(evaluation.jobs(options))} episodes", progress, play, show))
+
+
+def _options(given: dict[str, Any]) -> "Options":
+    from airhockey.commands._session import agent_of, disturbances_of, from_anywhere, python_of, real_time_of
+    from airhockey.evaluator import Options
+    from airhockey.evaluator.isolation.modes import choose
+
+    default = "planner" if given["parameters"] is None else "thesis"  # the one that reads them
+    agent, order = agent_of(given["agent"] or default), given["interpolation_order"]
+    environments = _environments(given)
+    return Options(
+        environments=environments,
+        agent=agent,
+        episodes=given["episodes"],
+        seed=given["seed"],
+        disturbances=disturbances_of(given),
+        interpolation_order="agent" if order is None else "none" if order == "none" else int(order),
+        clock=given["clock"],
+        isolate=choose(agent, given["isolate"]).mode,
+        patience=given["patience"],
+        real_time=real_time_of(given, (agent,), environments[0]),
+        python=python_of(given["python"]),
+        parameters=None if given["parameters"] is None else from_anywhere(given["parameters"]),
+    )
+
+
+def _environments(given: dict[str, Any]) -> tuple[str, ...]:
+    """The environments of a task and a robot, or the one named."""
+    from airhockey.envs.editions import edition
+    from airhockey.errors import ConfigurationError
+
+    if given["env"] is not None:
+        return (given["env"],)
+    robot, task = given["robot"], given["task"]
+    tasks = tuple(edition().score_weights[robot])
+    if task == "all":
+        return tasks
+    if f"{robot}-{task}" not in tasks:
+        raise ConfigurationError(f"there is no task {task!r} for the {robot} robot; its tasks are {', '.join(tasks)}")
+    return (f"{robot}-{task}",)
+
+
+def _name(options: "Options", given: dict[str, Any]) -> str:
+    """Says what is evaluated."""
+    what = options.environments[0] if len(options.environments) == 1 else f"{given['robot']}-all"
+    profile = [] if options.disturbances == "ideal" else [Path(options.disturbances).stem]
+    return "-".join([what, Path(options.agent).name, *profile, f"s{options.seed}"])

@@ -1,10 +1,12 @@
 """`hockey leaderboard`: a whole folder of results as a static site."""
 
+from pathlib import Path
 from typing import Any
 
 import rich_click as click
 
 from airhockey.commands import HELP_PAGE
+from airhockey.commands import _options as common
 
 
 @click.command()
@@ -16,9 +18,8 @@ from airhockey.commands import HELP_PAGE
     metavar="SITE",
     help="Folder of the site; its pages are replaced.  [default: DIR/leaderboard]",
 )
-@click.option("--quiet", is_flag=True, help="Only say what is missing.")
-@click.pass_context
-def leaderboard(ctx: click.RichContext, /, **given: Any) -> None:
+@common.options(common.only_notes)
+def leaderboard(**given: Any) -> None:
     """Make a static site of everything below DIR: every run, match and tournament.
 
     Entries are ranked overall, by the challenge's weighted score, and in each task, within the three classes of
@@ -31,6 +32,15 @@ def leaderboard(ctx: click.RichContext, /, **given: Any) -> None:
     hockey leaderboard runs
     hockey leaderboard runs -o public
     """
-    from airhockey.commands._reporting import make_leaderboard
+    from airhockey.commands._progress import of_pages
+    from airhockey.commands._session import say_notes
+    from airhockey.reporting import words
+    from airhockey.reporting.leaderboard import write_site
 
-    ctx.exit(make_leaderboard(given))
+    folder = Path(given["folder"])
+    site = Path(given["out"]) if given["out"] else folder / "leaderboard"
+    with of_pages(given["quiet"]) as say:
+        pages, notes = write_site(folder, site, say)
+    say_notes(notes)
+    if not given["quiet"]:
+        click.echo(f"wrote {words.count(pages, 'page')}; open {site / 'index.html'}")

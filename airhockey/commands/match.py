@@ -1,10 +1,11 @@
 """`hockey match`: games of one pair of players."""
 
+from pathlib import Path
 from typing import Any
 
 import rich_click as click
 
-from airhockey.commands._options import game_options, typed_options
+from airhockey.commands import _options as common
 
 
 @click.command()
@@ -12,7 +13,7 @@ from airhockey.commands._options import game_options, typed_options
 @click.argument("away", metavar="B", required=False)
 @click.option("--games", type=click.IntRange(min=1), default=1, show_default=True, help="How many games.")
 @click.option("--swap-sides", is_flag=True, help="Home and away: play every second game with the sides exchanged.")
-@game_options
+@common.options(*common.GAMES)
 @click.pass_context
 def match(ctx: click.RichContext, /, **given: Any) -> None:
     """Let A (home, on the left) play B: whole games under the rules of the challenge's tournament.
@@ -23,15 +24,29 @@ def match(ctx: click.RichContext, /, **given: Any) -> None:
 
     \b
     hockey match thesis hold
-    hockey match baseline thesis --games 10 --swap-sides --disturbances server
+    hockey match planner thesis --games 10 --swap-sides --disturbances server
     hockey match thesis submissions/my_agent --steps 3000 --json
-    hockey match --resume --out runs/match-baseline-thesis-s0
+    hockey match --resume --out runs/match-planner-thesis-s0
     """
-    typed = typed_options(ctx, given)
-    if given["resume"] and given["out"] is None:
-        raise click.UsageError("--resume needs the match's folder: --out FOLDER")
+    typed = common.typed_options(ctx, given)
     if not given["resume"] and given["away"] is None:
         raise click.UsageError("a match takes two players: hockey match A B")
-    from airhockey.commands._match import run
+    from airhockey.commands import _live, _tables
+    from airhockey.commands._session import AGENT_FAILED, Session, agent_of, game_options_of
+    from airhockey.evaluator.match import MatchOptions, MatchResult, begin_match, play_match, resume_match
 
-    ctx.exit(run(given, typed))
+    session = Session("match", given, typed)
+    home, away = (agent_of(given[side] or "") for side in ("home", "away"))
+    own = {name: given[name] for name in ("games", "seed", "swap_sides")}
+    options = MatchOptions(home=home, away=away, game=game_options_of(given, (home, away)), **own)
+    engine = session.engine(given["games"], isolated=True)
+    name = f"match-{Path(home).name}-{Path(away).name}-s{options.seed}"
+    folder = session.open(options, name, begin_match, resume_match, (home, away))
+    games = folder.manifest.options.games
+
+    def show(result: MatchResult) -> int:
+        session.print(folder, result, lambda: _tables.print_match(result, folder))
+        return AGENT_FAILED if any(any(game.failures) for game in result.games) else 0
+
+    progress = _live.of_games(folder.live, games, len(folder.records), session.quiet)
+    ctx.exit(session.run(folder, f"{games} games", progress, lambda view: play_match(folder, engine, view.add), show))

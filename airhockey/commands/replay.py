@@ -5,15 +5,14 @@ from typing import Any
 
 import rich_click as click
 
-from airhockey.commands._watching import run_replay, viewer_options
+from airhockey.commands import _options as common
 
 
 @click.command()
 @click.argument("run", metavar="RUN", type=click.Path(path_type=Path))
 @click.option("--episode", metavar="K", help="Episode or game to begin with.  [default: the first]")
-@viewer_options
-@click.pass_context
-def replay(ctx: click.RichContext, /, **given: Any) -> None:
+@common.options(*common.VIEWER)
+def replay(**given: Any) -> None:
     """Replay RUN in MuJoCo's viewer: the folder of a run, match or tournament, or an official dataset.pkl.
 
     Nothing is simulated: everything stands where the recording has it. Buttons and keys: space pauses, . and , step forth
@@ -21,9 +20,17 @@ def replay(ctx: click.RichContext, /, **given: Any) -> None:
     quits.
 
     \b
-    hockey replay runs/7dof-prepare-thesis-s0 --episode 17
-    hockey replay runs/match-baseline-thesis-s0
+    hockey replay runs/7dof-prepare-planner-s0 --episode 17
+    hockey replay runs/match-planner-thesis-s0
     hockey replay runs/tournament-s0 --episode 1/alpha-beta
     hockey replay official/7dof-hit/dataset.pkl
     """
-    ctx.exit(run_replay(given))
+    from airhockey.commands._session import MOST_NOTES, say_notes
+    from airhockey.commands._viewer import show_in_viewer
+    from airhockey.viewing.library import open_library
+    from airhockey.viewing.playback import RecordedShow
+
+    library = open_library(given["run"])
+    first = library.position(given["episode"]) if given["episode"] is not None else 0
+    say_notes(library.notes, MOST_NOTES)
+    show_in_viewer(RecordedShow(library.entries, first), given)

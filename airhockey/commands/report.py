@@ -1,10 +1,12 @@
 """`hockey report`: what runs, matches and tournaments left behind, as a page to look at."""
 
+from pathlib import Path
 from typing import Any
 
 import rich_click as click
 
 from airhockey.commands import HELP_PAGE
+from airhockey.commands import _options as common
 
 
 @click.command()
@@ -18,9 +20,8 @@ from airhockey.commands import HELP_PAGE
     show_default=True,
     help="Where the page goes; a file of that name is replaced.",
 )
-@click.option("--quiet", is_flag=True, help="Only say what is missing.")
-@click.pass_context
-def report(ctx: click.RichContext, /, **given: Any) -> None:
+@common.options(common.only_notes)
+def report(**given: Any) -> None:
     """Make one page of RUN…: folders of `hockey evaluate`, `hockey match` or `hockey tournament`.
 
     The page needs nothing but itself: no network, no scripts. Several runs of a task are compared, with intervals and a
@@ -30,10 +31,27 @@ def report(ctx: click.RichContext, /, **given: Any) -> None:
     For example:
 
     \b
-    hockey report runs/7dof-prepare-thesis-s0
-    hockey report runs/7dof-hit-thesis-s0 runs/7dof-hit-baseline-s0 -o hit.html
-    hockey report runs/match-baseline-thesis-s0 runs/tournament-s0 -o games.html
+    hockey report runs/7dof-prepare-planner-s0
+    hockey report runs/7dof-hit-thesis-s0 runs/7dof-hit-planner-s0 -o hit.html
+    hockey report runs/match-planner-thesis-s0 runs/tournament-s0 -o games.html
     """
-    from airhockey.commands._reporting import make_report
+    from airhockey.commands._progress import of_pages
+    from airhockey.commands._session import say_notes
+    from airhockey.errors import AirHockeyError, ConfigurationError
+    from airhockey.evaluator.runs.disk import replace_file
+    from airhockey.reporting import words
+    from airhockey.reporting.document import report
 
-    ctx.exit(make_report(given))
+    out = Path(given["out"])
+    if out.is_dir():
+        raise ConfigurationError(f"--out {str(out)!r} is a folder; name a file, as in {str(out / 'report.html')!r}")
+    with of_pages(given["quiet"]) as say:
+        page, notes = report([Path(folder) for folder in given["folders"]], say)
+    content = page.encode()
+    try:
+        replace_file(out, content)
+    except OSError as error:
+        raise AirHockeyError(f"cannot write {str(out)!r}: {error.strerror}") from error
+    say_notes(notes)
+    if not given["quiet"]:
+        click.echo(f"wrote {out} ({words.file_size(len(content))})")

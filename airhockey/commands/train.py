@@ -7,7 +7,7 @@ import rich_click as click
 
 from airhockey.commands import HELP_PAGE
 
-_COMMANDS = {"pgpe": "_train_pgpe", "sac": "_train_sac"}
+_COMMANDS = {"pgpe": "train_pgpe", "sac": "train_sac"}
 """A command's name and the module of this package that holds it, as a function of the command's name."""
 
 

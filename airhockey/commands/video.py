@@ -6,6 +6,8 @@ from typing import Any
 
 import rich_click as click
 
+from airhockey.commands import _options as common
+
 
 def _size(ctx: Any, param: Any, value: str) -> tuple[int, int]:
     """Read WIDTHxHEIGHT, 16 to 4096 pixels each way."""
@@ -42,7 +44,7 @@ def _size(ctx: Any, param: Any, value: str) -> tuple[int, int]:
     show_default=True,
     help="fast: no shadows; fine: smooth edges.",
 )
-@click.option("--quiet", is_flag=True, help="No progress.")
+@common.options(common.quiet)
 @click.pass_context
 def video(ctx: click.RichContext, /, **given: Any) -> None:
     """Make a film of RUN: the folder of a run, match or tournament, or an official dataset.pkl.
@@ -51,16 +53,34 @@ def video(ctx: click.RichContext, /, **given: Any) -> None:
     are written over the picture. Needs the extra video: pip install 'airhockey[video]'.
 
     \b
-    hockey video runs/7dof-hit-baseline-s0 -o hit.mp4 --episodes 0,3,7
-    hockey video runs/match-baseline-thesis-s0 -o best.mp4 --highlights
-    hockey video runs/match-baseline-thesis-s0 -o still.png --at 12.5 --quality fine
-    hockey video runs/7dof-prepare-thesis-s0 -o prepare.gif --episodes 2 --size 480x270 --fps 20
+    hockey video runs/7dof-hit-planner-s0 -o hit.mp4 --episodes 0,3,7
+    hockey video runs/match-planner-thesis-s0 -o best.mp4 --highlights
+    hockey video runs/match-planner-thesis-s0 -o still.png --at 12.5 --quality fine
+    hockey video runs/7dof-prepare-planner-s0 -o prepare.gif --episodes 2 --size 480x270 --fps 20
     """
     still = given["out"].suffix.lower() == ".png"
     if still != (given["at"] is not None):
         raise click.UsageError("a picture is of one moment, and a moment is a picture: -o FILE.png with --at SECONDS")
     if still and given["episodes"] is None:  # the first of all
         given["episodes"] = "0"
-    from airhockey.commands._filming import run
+    from airhockey.commands._progress import of_frames
+    from airhockey.commands._session import INTERRUPTED, MOST_NOTES, say_notes
+    from airhockey.viewing.library import open_library
+    from airhockey.viewing.video import FilmOptions, write_film
+    from airhockey.viewing.video_writer import check_film
 
-    ctx.exit(run(given))
+    out, (width, height) = given["out"], given["size"]
+    own = {name: given[name] for name in ("fps", "speed", "highlights", "quality", "seconds", "at")}
+    options = FilmOptions(width=width, height=height, inset=not given["no_inset"], **own)
+    check_film(out, width, height, options.fps)
+    library = open_library(given["run"])
+    entries = library.choose(given["episodes"])
+    say_notes(library.notes, MOST_NOTES)
+    try:
+        with of_frames(given["quiet"]) as on_frame:
+            frames = write_film(out, entries, options, on_frame)
+    except KeyboardInterrupt:
+        click.echo("hockey: interrupted; nothing was written", err=True)
+        ctx.exit(INTERRUPTED)
+    length = "1 frame" if options.at is not None else f"{frames} frames, {frames / options.fps:.1f} s"
+    click.echo(f"{out}: {length}, {out.stat().st_size / 1e6:.2f} MB")

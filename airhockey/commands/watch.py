@@ -4,8 +4,7 @@ from typing import Any
 
 import rich_click as click
 
-from airhockey.commands._isolation import isolation_options
-from airhockey.commands._watching import run_watch, viewer_options
+from airhockey.commands import _options as common
 
 
 @click.command()
@@ -18,22 +17,12 @@ from airhockey.commands._watching import run_watch, viewer_options
     show_default=True,
     help="What A plays alone.",
 )
-@click.option("--robot", type=click.Choice(["7dof", "3dof"]), default="7dof", show_default=True, help="Who plays it.")
-@click.option("--env", metavar="NAME", help="Task and robot in one name, as in 7dof-prepare.")
-@click.option("--steps", type=click.IntRange(min=1), default=45000, show_default=True, help="Control steps of a game.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of everything.")
+@common.options(common.robot, common.env, common.game_steps, common.seed)
 @click.option(
     "--episode", type=click.IntRange(min=0), default=0, show_default=True, help="Episode or game to begin with."
 )
-@click.option(
-    "--disturbances",
-    metavar="NAME|PATH",
-    default="ideal",
-    show_default=True,
-    help="Profile ideal, server or harsh, or a file.",
-)
-@isolation_options
-@viewer_options
+@common.options(common.disturbances)
+@common.options(*common.ISOLATION, *common.VIEWER)
 @click.pass_context
 def watch(ctx: click.RichContext, /, **given: Any) -> None:
     """Watch A at a task, or A play B, live in MuJoCo's viewer in the browser.
@@ -44,9 +33,51 @@ def watch(ctx: click.RichContext, /, **given: Any) -> None:
     episode; q in the terminal quits.
 
     \b
-    hockey watch baseline --task hit
-    hockey watch baseline thesis
+    hockey watch planner --task hit
+    hockey watch planner thesis
     hockey watch submissions/my_agent --env 7dof-prepare --disturbances server --episode 12
-    hockey watch baseline --no-browser --port 9000        then: ssh -L 9000:127.0.0.1:9000 …
+    hockey watch planner --no-browser --port 9000        then: ssh -L 9000:127.0.0.1:9000 …
     """
-    ctx.exit(run_watch(given))
+    common.typed_options(ctx, given)
+    from airhockey.commands._session import agent_of, say_what_is_not_protected
+    from airhockey.commands._viewer import show_in_viewer
+
+    agents = [agent_of(given[name]) for name in ("agent", "away") if given[name] is not None]
+    live = _game(agents, given) if given["away"] is not None else _task(agents[0], given)
+    say_what_is_not_protected(agents, given["isolate"])
+    show_in_viewer(live, given)
+
+
+def _task(agent: str, given: dict[str, Any]) -> Any:
+    from airhockey.commands._session import disturbances_of
+    from airhockey.evaluator import Options
+    from airhockey.evaluator.checks import check_options
+    from airhockey.evaluator.isolation.modes import choose
+    from airhockey.viewing.live import LiveTask
+
+    options = Options(
+        environments=(given["env"] or f"{given['robot']}-{given['task']}",),
+        agent=agent,
+        episodes=given["episode"] + 1,
+        seed=given["seed"],
+        disturbances=disturbances_of(given),
+        isolate=choose(agent, given["isolate"]).mode,
+        patience=given["patience"],
+    )
+    check_options(options)
+    return LiveTask(options, given["episode"])
+
+
+def _game(agents: list[str], given: dict[str, Any]) -> Any:
+    from airhockey.commands._session import game_options_of
+    from airhockey.errors import ConfigurationError
+    from airhockey.evaluator.checks import check_agent, check_game_options
+    from airhockey.viewing.live import LiveGame
+
+    if given["env"] is not None:
+        raise ConfigurationError("two players play a game: leave out --env, or the second player")
+    options = game_options_of(given)
+    check_game_options(options)
+    for agent in agents:
+        check_agent(agent, ("tournament",))
+    return LiveGame(agents[0], agents[1], options, given["seed"], given["episode"])

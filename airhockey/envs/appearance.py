@@ -39,10 +39,15 @@ def player_color(number: int) -> Color:
 
 
 def add_base(body: Any, robot: RobotSpec, number: int) -> None:
-    """The pedestal under the first joint."""
+    """The pedestal under the first joint, with a collar in the player's colour."""
     height = robot.links[0].position[2]
-    _cylinder(body, (0, 0, 0), (0, 0, 0.6 * height), 0.11, SHELL)
+    add_pedestal(body, robot)
     _cylinder(body, (0, 0, 0.6 * height), (0, 0, height), 0.09, player_color(number))
+
+
+def add_pedestal(body: Any, robot: RobotSpec) -> None:
+    """What the arm stands on."""
+    _cylinder(body, (0, 0, 0), (0, 0, 0.6 * robot.links[0].position[2]), 0.11, SHELL)
 
 
 def add_link(body: Any, robot: RobotSpec, number: int, index: int) -> None:
@@ -50,17 +55,27 @@ def add_link(body: Any, robot: RobotSpec, number: int, index: int) -> None:
     if robot.universal_height is None:
         return
     radius = _SHELL_RADIUS[index - 1]
-    end = robot.links[index].position if index < robot.n_joints else (0.0, 0.0, 0.06)
-    _cylinder(body, (0, 0, 0), end, 0.85 * radius, SHELL, capsule=True)
+    add_tube(body, robot, index)
     _cylinder(body, (0, 0, -0.2 * radius), (0, 0, 0.2 * radius), 1.06 * radius, JOINT_RING if index % 2 else ROD)
+
+
+def add_tube(body: Any, robot: RobotSpec, index: int) -> None:
+    """A tube from this joint of the iiwa to the next one."""
+    end = robot.links[index].position if index < robot.n_joints else (0.0, 0.0, 0.06)
+    _cylinder(body, (0, 0, 0), end, 0.85 * _SHELL_RADIUS[index - 1], SHELL, capsule=True)
 
 
 def add_tip(body: Any, robot: RobotSpec, number: int) -> None:
     """The iiwa's extension rod, drawn back from its tip towards the flange, and the universal joint."""
     if robot.universal_height is None:
         return
-    _cylinder(body, (0, 0, -robot.tip[0].position[2] + 0.06), (0, 0, 0), 0.014, ROD)
+    add_rod(body, robot)
     body.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=(0.022, 0, 0), rgba=JOINT_RING, **_UNSEEN_BY_PHYSICS)
+
+
+def add_rod(body: Any, robot: RobotSpec) -> None:
+    """The iiwa's extension rod, in the frame of its tip."""
+    _cylinder(body, (0, 0, -robot.tip[0].position[2] + 0.06), (0, 0, 0), 0.014, ROD)
 
 
 def add_surroundings(spec: Any) -> None:

@@ -136,7 +136,7 @@ class Environment(Copyable):
             visual,
             self.edition.scene,
         )
-        self.env_info = make_env_info(name, self.simulation, self.formats, self.edition, self.horizon)
+        self.env_info = make_env_info(name, self.simulation, self.edition, self.horizon)
         self.constraint_slices = constraint_slices(self.simulation.arm)
         self._referee = pack(_referee_rules(self.edition), new_game())
         rows = max([form.rows for form in self.formats] + [2] * (self.n_agents - self.n_players))
@@ -300,23 +300,21 @@ class Environment(Copyable):
         kept = {
             name: value for name, value in self.__dict__.items() if name not in ("task", "game", "_played", "_slots")
         }
-        robot = self.env_info["robot"] | {"robot_model": None, "robot_data": None}
-        return kept | {"env_info": self.env_info | {"robot": robot}, "_episode": None, "_start_is_own": True}
+        return kept | {"_episode": None, "_start_is_own": True}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
         self.task = task(self.edition.environment(self.name).kind)
-        self.env_info["robot"]["robot_model"] = self.simulation.robot_model
-        self.env_info["robot"]["robot_data"] = self.simulation.robot_data
         self._make_views()
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "Environment":
-        simulation, constraints = self.simulation, self.env_info["constraints"]
-        constant = [self.edition, self.disturbances, self.formats, self._starts, self.constraint_slices, constraints]
+        simulation = self.simulation
+        constant = [self.edition, self.disturbances, self.formats, self._starts, self.constraint_slices]
         constant += [simulation.robot, simulation.arm, simulation.robot_model]
         if self.disturbances.mismatch == Mismatch():
             constant.append(simulation.model)
         memo.update({id(shared): shared for shared in constant})
+        memo[id(simulation.robot_data)] = simulation.copy_robot_data()  # MuJoCo's own would copy the model, too
         twin = memo[id(self)] = object.__new__(type(self))
         twin.__setstate__(copy.deepcopy(self.__getstate__(), memo))
         return twin

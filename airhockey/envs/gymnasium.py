@@ -72,9 +72,10 @@ class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
         edition: str = "2023",
     ) -> None:
         self.environment = Environment(name, interpolation_order, disturbances, edition)
-        box = self.environment.env_info["rl_info"]
-        self.observation_space = spaces.Box(-np.inf, np.inf, box.observation_space.shape, np.float64)
-        self.action_space = spaces.Box(box.action_space.low, box.action_space.high, dtype=np.float64)
+        seen = self.environment.env_info["rl_info"].observation_space.shape
+        self.observation_space = spaces.Box(-np.inf, np.inf, seen, np.float64)
+        low, high = self.environment.formats[0].limits(self.environment.simulation.robot)
+        self.action_space = spaces.Box(low, high, dtype=np.float64)
         self._reward = reward
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Array, dict[str, Any]]:

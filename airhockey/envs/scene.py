@@ -103,10 +103,22 @@ def _make_particular(spec: Any, robot: RobotSpec, n_robots: int, particular: Sce
 
 def robot_model(robot: RobotSpec) -> mujoco.MjModel:
     """The arm alone, base at the origin, without the mallet: what the joint controller and the agents know."""
+    return _robot_spec(robot).compile()
+
+
+def robot_xml(robot: RobotSpec) -> str:
+    """The same as MJCF, for agents in an interpreter of their own."""
+    spec = _robot_spec(robot)
+    spec.compile()
+    return str(spec.to_xml())
+
+
+def _robot_spec(robot: RobotSpec) -> Any:
     spec = _empty_spec()
     base = spec.worldbody.add_body(name=f"{robot.prefix}_1/base")
     _add_robot(spec, base, robot, 1, visual=False, playing=False)
-    return spec.compile()
+    _add_outline(spec, robot)
+    return spec
 
 
 def _empty_spec() -> Any:
@@ -154,6 +166,24 @@ def _add_robot(spec: Any, base: Any, robot: RobotSpec, number: int, visual: bool
         motor.set_to_motor()
         motor.ctrllimited = True
         motor.ctrlrange = (-torque_limit, torque_limit)
+
+
+def _add_outline(spec: Any, robot: RobotSpec) -> None:
+    """As many geoms as the official robot-only model has, under its names: the planar arm's own, one a body for the iiwa."""
+    name = f"{robot.prefix}_1"
+    appearance.add_pedestal(spec.body(f"{name}/base"), robot)
+    for index in range(1, robot.n_joints + 1):
+        body = spec.body(f"{name}/{robot.link_prefix}_{index}")
+        if robot.universal_height is None:
+            _add_planar_geoms(body, index)
+        else:
+            appearance.add_tube(body, robot, index)
+    for fixed in robot.tip:
+        body = spec.body(f"{name}/{fixed.name}")
+        if robot.universal_height is None:
+            _add_planar_tip_geoms(body, fixed.name, 1)
+        else:
+            appearance.add_rod(body, robot)
 
 
 def _add_link(parent: Any, name: str, joint: str, link: Link) -> Any:

@@ -8,25 +8,25 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from airhockey.evaluator.engines import Engine, InProcess, Processes, engine_for
-    from airhockey.evaluator.records import EpisodeRecord, Options, RunResult, TaskResult
-    from airhockey.evaluator.report import report
-    from airhockey.evaluator.run import begin, evaluate, play_episode, take_up
+    from airhockey.evaluator.engines.engine import Engine, InProcess, engine_for
+    from airhockey.evaluator.engines.processes import Processes
+    from airhockey.evaluator.evaluation import begin, evaluate, play_episode, report, resume
+    from airhockey.evaluator.runs.records import EpisodeRecord, Options, RunResult, TaskResult
 
 _HOMES = {
-    "Engine": "engines",
-    "EpisodeRecord": "records",
-    "InProcess": "engines",
-    "Options": "records",
-    "Processes": "engines",
-    "RunResult": "records",
-    "TaskResult": "records",
-    "begin": "run",
-    "engine_for": "engines",
-    "evaluate": "run",
-    "play_episode": "run",
-    "report": "report",
-    "take_up": "run",
+    "Engine": "engines.engine",
+    "EpisodeRecord": "runs.records",
+    "InProcess": "engines.engine",
+    "Options": "runs.records",
+    "Processes": "engines.processes",
+    "RunResult": "runs.records",
+    "TaskResult": "runs.records",
+    "begin": "evaluation",
+    "engine_for": "engines.engine",
+    "evaluate": "evaluation",
+    "play_episode": "evaluation",
+    "report": "evaluation",
+    "resume": "evaluation",
 }
 
 __all__ = [
@@ -42,7 +42,7 @@ __all__ = [
     "evaluate",
     "play_episode",
     "report",
-    "take_up",
+    "resume",
 ]
 
 

@@ -1,19 +1,17 @@
 """What can be said about a run's options before anything is built or written."""
 
-from collections.abc import Mapping
 from pathlib import Path
 
-from airhockey import envs
 from airhockey.agents import AGENTS
 from airhockey.agents.submission import is_submission, submission_config
 from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.envs.editions import Edition, edition
 from airhockey.errors import ConfigurationError, unknown
-from airhockey.evaluator.episode import CLOCKS
-from airhockey.evaluator.games.records import VARIANTS, GameOptions
+from airhockey.evaluator.isolation.handle import CLOCKS
 from airhockey.evaluator.isolation.modes import REMOTE, choose, host_and_port
-from airhockey.evaluator.records import Options
+from airhockey.evaluator.runs.game_records import VARIANTS, GameOptions
+from airhockey.evaluator.runs.records import Options
 
 RULE_BASED = ("thesis", "thesis-final")  # agents whose numbers are in a file
 ORDERS = (1, 2, 3, 4, 5, -1, "none", "agent")
@@ -60,16 +58,6 @@ def check_seed(seed: int) -> None:
     """Seeds are natural numbers; raises `ConfigurationError` where one is not."""
     if seed < 0:
         raise ConfigurationError(f"the seed must not be negative, as {seed} is")
-
-
-def check_versions(began_with: Mapping[str, str], path: Path) -> None:
-    """What was begun with other software cannot go on with this one; raises `ConfigurationError`."""
-    for name, version in envs.versions().items():
-        if began_with.get(name) != version:
-            raise ConfigurationError(
-                f"the run in {str(path)!r} began with {name} {began_with.get(name)}, but this is {version}: "
-                "results would differ"
-            )
 
 
 def task_environments(rules: Edition) -> tuple[str, ...]:

@@ -15,10 +15,9 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from airhockey.evaluator import trajectories
-from airhockey.evaluator.records import RunResult, TaskResult
-from airhockey.evaluator.report import task_results
-from airhockey.evaluator.store import TRAJECTORIES
+from airhockey.evaluator.runs import trajectories
+from airhockey.evaluator.runs.records import RunResult, TaskResult
+from airhockey.evaluator.runs.trajectories import TRAJECTORIES
 
 Transition = tuple[Any, Any, float, Any, bool, bool]
 
@@ -44,7 +43,7 @@ def write_official(path: Path, result: TaskResult | RunResult) -> Path:
         The folder of the official files.
     """
     official = path / "official"
-    for task in task_results(result):
+    for task in result.tasks:
         _write_task(path / TRAJECTORIES, official / task.env, task)
     _write_json(official / "results.json", _results(result))
     return official
@@ -86,7 +85,7 @@ def _results(result: TaskResult | RunResult) -> dict[str, Any]:
             "deployability": task.deployability,
             "violations": task.violations,
         }
-        for task in task_results(result)
+        for task in result.tasks
     }
     if isinstance(result, RunResult):
         results["overall"] = {"deployability": result.deployability, "phase": result.phase, "score": result.score}

@@ -1,7 +1,7 @@
 """Reports: what runs, matches and tournaments left behind, as pages for people.
 
 from airhockey.reporting import report
-page, notes = report([Path("runs/7dof-prepare-thesis-s0")])
+page, notes = report([Path("runs/7dof-prepare-planner-s0")])
 
 A page is one HTML file without scripts, without images and without anything to fetch. Its drawings are inline SVG made here:
 they take the page's colours (dark mode, print), scale to a phone, carry text alternatives, and weigh kilobytes where a

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from airhockey import __version__
 from airhockey.errors import ConfigurationError
+from airhockey.evaluator.analysis.game import GameAnalysis, analyse_game
+from airhockey.evaluator.runs.reader import BROKEN, Match, Nothing, Run, Source, Tournament, open_source, reason
 from airhockey.reporting import words
 from airhockey.reporting.episodes import TaskData, read_task
-from airhockey.reporting.films import FilmData, read_game
 from airhockey.reporting.markup import Markup
 from airhockey.reporting.page import contents, page
 from airhockey.reporting.results import Task
@@ -20,7 +21,6 @@ from airhockey.reporting.sections.quantities import FEW
 from airhockey.reporting.sections.summary import conditions, missing, summary
 from airhockey.reporting.sections.task import task_section
 from airhockey.reporting.sections.tournament import tournament_section
-from airhockey.reporting.sources import BROKEN, Match, Nothing, Run, Source, Tournament, open_source, reason
 
 Say = Callable[[str], None]
 _MOST_FILMS = 60
@@ -144,12 +144,12 @@ def _task_parts(tasks: Sequence[Task]) -> list[Part]:
 def _game_part(source: Match | Tournament, identifier: str, say: Say) -> Part:
     games = []
     for number, record in enumerate(source.records):
-        film: FilmData | None = None
+        film: GameAnalysis | None = None
         path = source.film(record)
         if path is not None and number < _MOST_FILMS:
             say(f"reading {path}")
             try:
-                film = read_game(path, record)
+                film = analyse_game(path, record)
             except BROKEN as error:
                 source.notes.append(f"cannot read {path.relative_to(source.path)}: {reason(error, source.path)}")
         games.append(PlayedGame(record, film))

@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from airhockey.envs import ENVIRONMENTS
 from airhockey.envs.disturbances import Disturbances
 from airhockey.envs.editions import Edition
-from airhockey.evaluator.judging import CLASSES, PHASES, worst_class
-from airhockey.reporting.results import OFFICIAL_EPISODES, Task
+from airhockey.evaluator.judging.tasks import CLASSES, OFFICIAL_EPISODES, PHASES, weighted, worst_class
+from airhockey.reporting.results import Task
 
 
 @dataclass(frozen=True)
@@ -47,12 +47,12 @@ class Overall:
     @property
     def deployability(self) -> str:
         """The worst task's class."""
-        return worst_class(task.deployability for task in self.tasks.values())
+        return worst_class(task.verdict.official_class for task in self.tasks.values())
 
     @property
     def penalty(self) -> float:
         """Penalty points of all tasks."""
-        return sum(task.penalty for task in self.tasks.values())
+        return sum(task.verdict.penalty for task in self.tasks.values())
 
 
 @dataclass
@@ -78,7 +78,13 @@ class Board:
         """The entries of a task with the run that counts, best first within the better class first."""
         found = [(name, counting(by_env[env])) for name, by_env in self.results.items() if env in by_env]
         return sorted(
-            found, key=lambda one: (CLASSES.index(one[1].deployability), -one[1].success, one[1].penalty, one[0])
+            found,
+            key=lambda one: (
+                CLASSES.index(one[1].verdict.official_class),
+                -one[1].verdict.success,
+                one[1].verdict.penalty,
+                one[0],
+            ),
         )
 
     def overall(self, weights: Mapping[str, float]) -> list[Overall]:
@@ -87,7 +93,8 @@ class Board:
         for name, by_env in self.results.items():
             if weights.keys() <= by_env.keys():
                 tasks = {env: counting(by_env[env]) for env in weights}
-                found.append(Overall(name, tasks, sum(weight * tasks[env].success for env, weight in weights.items())))
+                success = {env: task.verdict.success for env, task in tasks.items()}
+                found.append(Overall(name, tasks, weighted(success, weights)))
         return sorted(found, key=lambda one: (CLASSES.index(one.deployability), -one.score, one.penalty, one.name))
 
     def incomplete(self, weights: Mapping[str, float]) -> list[tuple[str, list[str]]]:
@@ -98,7 +105,7 @@ class Board:
 
 def counting(tasks: Sequence[Task]) -> Task:
     """The run that counts."""
-    return max(tasks, key=lambda task: (min(task.episodes, OFFICIAL_EPISODES), task.run.created))
+    return max(tasks, key=lambda task: (min(task.verdict.episodes, OFFICIAL_EPISODES), task.run.created))
 
 
 def boards(tasks: Iterable[Task]) -> list[Board]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from airhockey.envs.compiled import MAX_END_EFFECTOR_Y, MIN_END_EFFECTOR_X
 from airhockey.envs.specs import IIWA
-from airhockey.reporting.hits import contacts, last_of_each
+from airhockey.evaluator.analysis.contacts import contacts, hits
 
 Array = NDArray[np.float64]
 Table = NDArray[Any]
@@ -132,7 +132,7 @@ def _hits(before: Array, after: Array, mallet: Array, is_first: NDArray[np.bool_
     """The last steps of all hits; where the mallet was at the start of an episode is not known but hardly differs."""
     mallet_before = np.roll(mallet, 1, axis=0)
     mallet_before[is_first] = mallet[is_first]
-    return last_of_each(contacts(before, after, mallet_before, mallet), is_first)
+    return hits(contacts(before, after, mallet_before, mallet), is_first)[:, 1]
 
 
 def _margins(values: Array, firsts: NDArray[np.int64], since_start: NDArray[np.int64], mallet: Array) -> Margins:

@@ -8,18 +8,19 @@ from pathlib import Path
 from airhockey import __version__
 from airhockey.envs.editions import available, edition
 from airhockey.errors import AirHockeyError, ConfigurationError
+from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES
+from airhockey.evaluator.runs.reader import MANIFESTS, Match, Nothing, Run, Source, Tournament, open_source
 from airhockey.reporting import words
 from airhockey.reporting.document import report
 from airhockey.reporting.entries import boards, in_order, phases
 from airhockey.reporting.markup import Markup
 from airhockey.reporting.page import link, page
-from airhockey.reporting.results import OFFICIAL_EPISODES, Task
+from airhockey.reporting.results import Task
 from airhockey.reporting.sections.board import history_section, overall_section, see, task_section
 from airhockey.reporting.sections.match import matches_section
 from airhockey.reporting.sections.summary import missing
 from airhockey.reporting.sections.tournament import standings_section
 from airhockey.reporting.site import SiteFolder, check_place, slug
-from airhockey.reporting.sources import MANIFESTS, Match, Nothing, Run, Source, Tournament, open_source
 
 Say = Callable[[str], None]
 INDEX = "index.html"

@@ -7,13 +7,10 @@ from functools import cached_property
 import numpy as np
 
 from airhockey.envs.editions import Edition, available, edition
-from airhockey.evaluator import judging
-from airhockey.evaluator.records import EpisodeRecord
+from airhockey.evaluator.judging.tasks import COMPUTATION_TIME, Verdict, judge
+from airhockey.evaluator.runs.reader import Run
+from airhockey.evaluator.runs.records import EpisodeRecord
 from airhockey.reporting.episodes import TaskData
-from airhockey.reporting.sources import Run
-
-OFFICIAL_EPISODES = 1000
-"""What the limits of the deployability classes are made for."""
 
 
 @dataclass(frozen=True)
@@ -40,42 +37,15 @@ class Task:
         asked = self.run.manifest.options.edition if self.run.manifest else ""
         return edition(asked if asked in available() else available()[0])
 
-    @property
-    def episodes(self) -> int:
-        """How many there are."""
-        return len(self.records)
-
     @cached_property
-    def successes(self) -> int:
-        """Episodes that ended in success."""
-        return sum(record.success for record in self.records)
+    def verdict(self) -> Verdict:
+        """The judge's."""
+        return judge(self.records, self.rules)
 
     @property
-    def success(self) -> float:
-        """Their share."""
-        return self.successes / self.episodes
-
-    @cached_property
-    def penalty(self) -> float:
-        """Penalty points; a constraint that the rules do not know costs nothing."""
-        known = self.rules.penalty_points
-        points = 0.0
-        for record in self.records:
-            time = record.computation_time
-            points += sum(known.get(name, 0.0) for name, steps in record.violations.items() if steps)
-            points += self.rules.time_penalty(time.max, time.mean)
-        return points
-
-    @property
-    def deployability(self) -> str:
-        """The class of the penalty at the rate of an official evaluation."""
-        return self.rules.deployability.class_of(self.penalty * OFFICIAL_EPISODES / self.episodes)
-
-    @cached_property
     def violations(self) -> dict[str, int]:
         """Constraint name -> number of episodes that violated it; "computation_time" among them."""
-        late = sum(bool(self.rules.time_penalty(r.computation_time.max, r.computation_time.mean)) for r in self.records)
-        return {**judging.violated_episodes(self.records), "computation_time": late}
+        return {**self.verdict.violations, COMPUTATION_TIME: self.verdict.late}
 
     @cached_property
     def computation_time(self) -> tuple[float, float | None, float]:
@@ -85,8 +55,3 @@ class Task:
         mean = sum(record.computation_time.mean * record.steps for record in self.records) / max(steps, 1)
         p99 = float(np.percentile(self.data.times, 99)) if self.data is not None else None
         return mean, p99, longest
-
-    @property
-    def failures(self) -> int:
-        """Episodes that the agent failed."""
-        return sum(record.error is not None for record in self.records)

@@ -5,7 +5,7 @@ import zlib
 from pathlib import Path
 
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.disk import replace_file
+from airhockey.evaluator.runs.disk import replace_file
 
 MARK = ".hockey-leaderboard"
 """A file that lists what was written: only such a folder is written to again, and only these files are ever removed."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from airhockey.evaluator.judging import wilson_interval
+from airhockey.evaluator.judging.tasks import wilson_interval
 
 _SAME = 1.0 + 1e-7  # probabilities that are equal but for rounding count as equal, as is usual
 

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable
 
-from airhockey.evaluator.judging import wilson_interval
+from airhockey.evaluator.judging.tasks import wilson_interval
 
 CONSTRAINTS = {
     "joint_pos_constr": "joint position",

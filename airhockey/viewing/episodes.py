@@ -10,7 +10,7 @@ from airhockey.envs.editions import ROBOTS, edition
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.recording import Moment, Recording
-from airhockey.viewing.stage import Stage
+from airhockey.viewing.scene_view import Stage
 
 Array = NDArray[np.float64]
 ACHIEVED = {"hit": ("goal", "goal"), "defend": ("save", "puck stopped"), "prepare": ("prepared", "puck in reach")}

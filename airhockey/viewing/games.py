@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from airhockey.envs.specs import CONTROL_PERIOD, IIWA
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.games.records import SIDES, Event, GameRecord
+from airhockey.evaluator.analysis.shots import shots_of
+from airhockey.evaluator.runs.game_records import SIDES, Event, GameRecord
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.recording import Moment, Recording
-from airhockey.viewing.saves import saves
 
 Array = NDArray[np.float64]
 N = IIWA.n_joints
@@ -79,13 +79,12 @@ def game_recording(name: str, film: Array, record: GameRecord | None) -> Recordi
     players = (record.job.home, record.job.away) if record else ("home", "away")
     rows = film.reshape(-1, 2, WIDTH)
     joints = rows[:, :, 6 : 6 + N]
-    # A row's last entries are where the other robot's tip is.
-    mallets = rows[:, ::-1, 6 + 2 * N : 8 + 2 * N]
     events = record.events if record else ()
-    goals = [event.step for event in events if event.what == "goal"]
     moments = [told(event, players) for event in events]
-    for step, k, speed in saves(film[:, :2], film[:, 3:5], mallets, goals):
-        moments.append(Moment(step, "save", k, f"{players[k]} saves", speed))
+    for shot in shots_of(film, events):
+        if shot.outcome == "saved" and shot.touched is not None:
+            k = 1 - SIDES.index(shot.side)
+            moments.append(Moment(shot.touched, "save", k, f"{players[k]} saves", shot.speed))
     moments.sort(key=lambda moment: moment.step)
     title = f"game {name}" if record else f"game {name} (no record: score unknown)"
     narrator = GameNarrator(title, players, events, moments)

@@ -7,22 +7,21 @@ from typing import TYPE_CHECKING, Any
 from airhockey.viewing.library import Entry, Library
 
 if TYPE_CHECKING:
-    from airhockey.evaluator.games.records import GameRecord
+    from airhockey.evaluator.runs.game_records import GameRecord
     from airhockey.viewing.recording import Recording
 
 
 def add_games(library: Library) -> None:
     """Add the games of a folder, if it is one of games."""
-    from airhockey.evaluator.games.folder import read_games
-    from airhockey.evaluator.games.match import MATCH
-    from airhockey.evaluator.games.records import file_name
-    from airhockey.evaluator.games.tournament import TOURNAMENT
+    from airhockey.evaluator.runs.game_records import GameRecord, file_name
+    from airhockey.evaluator.runs.journal import read_journal
+    from airhockey.evaluator.runs.manifest import MATCH, TOURNAMENT
 
     path = library.path
     films = {film.stem: film for film in sorted((path / "films").glob("*.h5"), key=_natural)}
     if not films and not any((path / name).exists() for name in (MATCH, TOURNAMENT)):
         return
-    records = {record.job.key: record for record in read_games(path)}
+    records = {record.job.key: record for record in read_journal(path, GameRecord).records}
     for key, record in records.items():
         film = films.pop(file_name(key), None)
         if film is not None:
@@ -42,7 +41,7 @@ def _loader(name: str, film: Path, record: "GameRecord | None") -> "Callable[[],
         import numpy as np
 
         from airhockey.errors import ConfigurationError
-        from airhockey.evaluator.games.film import read_film
+        from airhockey.evaluator.runs.game_trajectories import read_film
         from airhockey.viewing.games import game_recording
 
         try:
@@ -59,7 +58,7 @@ def _record_in(film: Path) -> "GameRecord | None":
     import h5py
     import msgspec
 
-    from airhockey.evaluator.games.records import GameRecord
+    from airhockey.evaluator.runs.game_records import GameRecord
 
     try:
         with h5py.File(film) as file:

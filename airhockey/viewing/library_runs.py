@@ -8,16 +8,19 @@ from airhockey.errors import ConfigurationError
 from airhockey.viewing.library import Entry, Library
 
 if TYPE_CHECKING:
-    from airhockey.evaluator.records import EpisodeRecord, Manifest
+    from airhockey.evaluator.runs.manifest import Manifest
+    from airhockey.evaluator.runs.records import EpisodeRecord, Options
     from airhockey.viewing.recording import Recording
 
 
 def add_run(library: Library) -> None:
     """Add the episodes of a run folder, if it is one."""
-    from airhockey.evaluator.store import TRAJECTORIES, read_journal
+    from airhockey.evaluator.runs.journal import read_journal
+    from airhockey.evaluator.runs.records import EpisodeRecord
+    from airhockey.evaluator.runs.trajectories import TRAJECTORIES
 
     path = library.path
-    merged, journal = path / TRAJECTORIES, path / "journal.jsonl"
+    merged = path / TRAJECTORIES
     files = [merged] if merged.exists() else sorted((path / "trajectories").glob("*.h5"))
     if not files and not (path / "run.json").exists():
         return
@@ -34,15 +37,16 @@ def add_run(library: Library) -> None:
             library.entries.append(Entry(name, _loader(name, file, record, player)))
         else:
             library.notes.append(f"episode {record.index} of {record.env} has no steps: {record.error}")
-    noted = len(read_journal(path)) if journal.exists() else 0
+    noted = len(read_journal(path, EpisodeRecord).records)
     _say_what_is_missing(library, manifest, len(found), noted)
 
 
-def _manifest(library: Library) -> "Manifest | None":
-    from airhockey.evaluator.store import read_manifest
+def _manifest(library: Library) -> "Manifest[Options] | None":
+    from airhockey.evaluator.runs.manifest import RUN, read_manifest
+    from airhockey.evaluator.runs.records import Options
 
     try:
-        return read_manifest(library.path)
+        return read_manifest(library.path, RUN, Options)
     except ConfigurationError as error:
         library.notes.append(str(error))
         return None
@@ -51,7 +55,7 @@ def _manifest(library: Library) -> "Manifest | None":
 def _records(library: Library, file: Path) -> "list[EpisodeRecord]":
     import msgspec
 
-    from airhockey.evaluator import trajectories
+    from airhockey.evaluator.runs import trajectories
 
     try:
         return trajectories.read_records(file)
@@ -60,13 +64,13 @@ def _records(library: Library, file: Path) -> "list[EpisodeRecord]":
         return []
 
 
-def _place(manifest: "Manifest | None", env: str) -> tuple[int, str]:
+def _place(manifest: "Manifest[Options] | None", env: str) -> tuple[int, str]:
     order = manifest.options.environments if manifest else ()
     return (order.index(env) if env in order else len(order)), env
 
 
 def _loader(name: str, file: Path, record: "EpisodeRecord", player: str) -> "Callable[[], Recording]":
-    from airhockey.evaluator import trajectories
+    from airhockey.evaluator.runs import trajectories
     from airhockey.viewing.episodes import Outcome, episode_recording
 
     def load() -> "Recording":
@@ -78,7 +82,7 @@ def _loader(name: str, file: Path, record: "EpisodeRecord", player: str) -> "Cal
     return load
 
 
-def _say_what_is_missing(library: Library, manifest: "Manifest | None", found: int, noted: int) -> None:
+def _say_what_is_missing(library: Library, manifest: "Manifest[Options] | None", found: int, noted: int) -> None:
     if manifest is not None:
         asked = manifest.options.episodes * len(manifest.options.environments)
         if found < asked:

@@ -1,6 +1,5 @@
 """Live shows: an agent at a task, or two in a game, played while one looks on."""
 
-import contextlib
 from dataclasses import replace
 from typing import Any
 
@@ -10,40 +9,22 @@ from numpy.typing import NDArray
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.errors import AirHockeyError
-from airhockey.evaluator import seeding
-from airhockey.evaluator.episode import agent_failures, describe
-from airhockey.evaluator.games.play import GamePlay
-from airhockey.evaluator.games.player import GamePlayer
-from airhockey.evaluator.games.records import SIDES, GameJob, GameOptions
-from airhockey.evaluator.games.watch import Watch
-from airhockey.evaluator.isolation.apart import Apart
-from airhockey.evaluator.player import Player, Setting
-from airhockey.evaluator.records import Options
+from airhockey.evaluator.play import seeding
+from airhockey.evaluator.play.episode import EpisodePlayer
+from airhockey.evaluator.play.game import GamePlayer
+from airhockey.evaluator.play.rollout import Rollout
+from airhockey.evaluator.runs.game_records import GameJob, GameOptions
+from airhockey.evaluator.runs.records import Job, Options
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.episodes import ACHIEVED
 from airhockey.viewing.games import LOOKED_AT, NEWS_STEPS, news_of, told
 from airhockey.viewing.marks import TARGETS, Mark, path, target
-from airhockey.viewing.show import predicted_path
-from airhockey.viewing.stage import Stage
+from airhockey.viewing.playback import predicted_path
+from airhockey.viewing.scene_view import Stage
 
 Array = NDArray[np.float64]
 AHEAD = 0.15
 """How far ahead a commanded motion is drawn, in [s]."""
-
-
-class OpenPlayer(Player):
-    """A player whose setting can be used step by step."""
-
-    def setting(self, env: str) -> Setting:
-        """The environment with its agent, built on first use or after a failure."""
-        return self._setting_for(env)
-
-    def seed_agent(self, setting: Setting, index: int) -> None:
-        """As before an episode of a run."""
-        seed = seeding.seed_of(self.options.seed, setting.name, index, seeding.AGENT)
-        seeding.seed_global_generators(seed)
-        if isinstance(setting.agent, Apart):
-            setting.agent.seed(seed)
 
 
 class LiveTask:
@@ -58,7 +39,7 @@ class LiveTask:
 
     def __init__(self, options: Options, episode: int = 0) -> None:
         self._options, self._name = options, options.environments[0]
-        self._player = OpenPlayer(options, load_disturbances(options.disturbances))
+        self._player = EpisodePlayer(options, load_disturbances(options.disturbances))
         self.stage = Stage(self._name, options.edition)
         self.begin(episode)
 
@@ -69,40 +50,27 @@ class LiveTask:
 
     def begin(self, episode: int) -> None:
         """See `Show`."""
-        setting = self._setting = self._player.setting(self._name)
-        if setting.failure is not None:
-            raise AirHockeyError(f"there is no agent to watch: {setting.failure}")
-        self.episode, self.step, self.steps = max(episode, 0), 0, int(setting.env.horizon)
-        self._over, self._news = False, ""
+        self.episode, self.step = max(episode, 0), 0
+        rollout = self._rollout = self._player.open(Job(self._name, self.episode))
+        (self._seat,) = rollout.seats
+        if self._seat.agent is None:
+            raise AirHockeyError(f"there is no agent to watch: {self._seat.failure}")
+        self.steps = int(rollout.env.horizon)
         self._now: list[str] = []
         self._violated: set[str] = set()
-        self._player.seed_agent(setting, self.episode)
-        try:
-            setting.agent.episode_start()
-        except agent_failures() as failure:
-            self._fail(failure)
-        seed = seeding.seed_of(self._options.seed, self._name, self.episode, seeding.ENVIRONMENT)
-        self._observation = setting.env.reset(seed=seed)
-        self._action: Any = None
-        self.stage.copy_state(setting.env.simulation.data)
+        rollout.begin()
+        self.stage.copy_state(rollout.env.simulation.data)
 
     def advance(self) -> bool:
         """See `Show`."""
-        if self._over:
-            return False
-        env, agent = self._setting.env, self._setting.agent
-        try:
-            for preprocessor in getattr(agent, "preprocessors", ()):
-                self._observation = preprocessor(self._observation)
-            action = agent.draw_action(self._observation)
-            self._observation, _, self._over, info = env.step(action)
-        except agent_failures() as failure:
-            self._fail(failure)
+        rollout = self._rollout
+        if rollout.over or self.step >= self.steps or not rollout.step():
             return False
         self.step += 1
-        self._action = action
-        self._note(env, info)
-        self.stage.copy_state(env.simulation.data)
+        values = rollout.info["constraints_value"].items()
+        self._now = [name for name, value in values if (np.asarray(value) > 0.0).any()]
+        self._violated.update(self._now)
+        self.stage.copy_state(rollout.env.simulation.data)
         return True
 
     def seek(self, step: int) -> None:
@@ -110,49 +78,35 @@ class LiveTask:
 
     def caption(self) -> Caption:
         """See `Show`."""
-        env, options = self._setting.env, self._options
-        points = sum(env.edition.penalty_points.get(name, 0.0) for name in self._violated)
+        options = self._options
+        points = sum(self._rollout.env.edition.penalty_points.get(name, 0.0) for name in self._violated)
         alarm = "violates " + ", ".join(self._now) if self._now else ""
         return Caption(
             f"{self._name}, episode {self.episode}, seed {options.seed}",
             (options.agent.rpartition("/")[2],),
             self.step * CONTROL_PERIOD,
             penalty=(points,),
-            phases=(str(getattr(self._setting.agent, "phase", "")),),
-            news=self._news,
+            phases=(self._seat.phase,),
+            news=self._news(),
             alarm=alarm,
         )
 
     def marks(self) -> list[Mark]:
         """See `Show`."""
-        base = self._setting.env.base_observation
-        return predicted_path(base[:3], base[3:6]) + mallet_target(self.stage, 0, self._setting.agent, self._action)
+        return marks_of(self.stage, self._rollout)
 
     def close(self) -> None:
         """Tell the agent that it is over."""
         self._player.close()
 
-    def _note(self, env: Any, info: Any) -> None:
-        self._now = [name for name, value in info["constraints_value"].items() if (np.asarray(value) > 0.0).any()]
-        self._violated.update(self._now)
-        self._over = self._over or self.step >= self.steps
-        if self._over:
-            _, achieved = ACHIEVED[self._name.rpartition("-")[2]]
-            self._news = achieved if info["success"] else "not achieved"
-
-    def _fail(self, failure: BaseException) -> None:
-        self._over, self._news = True, f"the agent failed: {describe(failure)}"
-
-
-class OpenGamePlayer(GamePlayer):
-    """A player of games that hands out a game before it is played."""
-
-    def open(self, job: GameJob) -> GamePlay:
-        """The players and the table, ready to begin."""
-        watch = Watch()
-        env, builds = self._build(job, watch)
-        agents, failures = zip(*builds, strict=True)
-        return GamePlay(job, self.options, env, agents, failures, watch=watch)
+    def _news(self) -> str:
+        """How it ended, once it has."""
+        if self._seat.failure is not None:
+            return f"the agent failed: {self._seat.failure}"
+        if not self._rollout.over and self.step < self.steps:
+            return ""
+        _, achieved = ACHIEVED[self._name.rpartition("-")[2]]
+        return achieved if self._rollout.info["success"] else "not achieved"
 
 
 class LiveGame:
@@ -169,7 +123,7 @@ class LiveGame:
 
     def __init__(self, home: str, away: str, options: GameOptions, seed: int, episode: int = 0) -> None:
         self._agents, self._options, self._seed = (home, away), options, seed
-        self._player = OpenGamePlayer(options, load_disturbances(options.disturbances))
+        self._player = GamePlayer(options, load_disturbances(options.disturbances))
         self._game: Any = None
         self.stage = Stage("tournament", options.edition)
         self.begin(episode)
@@ -189,19 +143,18 @@ class LiveGame:
         job = GameJob(key, *names, home, away, seeding.game_seed(self._seed, key))
         self._game = self._player.open(job)
         self._names = names
-        failed = [competitor.failure for competitor in self._game.competitors if competitor.failure]
+        failed = [seat.failure for seat in self._game.seats if seat.failure]
         if failed:
             raise AirHockeyError(f"there is no game to watch: {failed[0]}")
-        self._observation = self._game.begin()
+        self._game.begin()
         self.stage.copy_state(self._game.env.simulation.data)
 
     def advance(self) -> bool:
         """See `Show`."""
-        failed = [competitor for competitor in self._game.competitors if competitor.failure is not None]
-        if self.step >= self.steps or failed:
+        if self._game.over:
             return False
-        self.step += 1
-        self._observation = self._game.step(self._observation, self.step)
+        self._game.step()
+        self.step = self._game.rollout.steps
         self.stage.copy_state(self._game.env.simulation.data)
         return True
 
@@ -210,16 +163,13 @@ class LiveGame:
 
     def close(self) -> None:
         """Tell the players that the game is over."""
-        for agent in self._game.agents if self._game else ():
-            stop = getattr(agent, "stop", None)
-            if stop is not None:
-                with contextlib.suppress(*agent_failures()):
-                    stop()
+        for seat in self._game.seats if self._game else ():
+            seat.stop()
 
     def caption(self) -> Caption:
         """See `Show`."""
         game = self._game
-        home, away = game.competitors
+        home, away = game.penalties
         recent = [told(event, self._names) for event in game.events[-LOOKED_AT:] if self.step - event.step < NEWS_STEPS]
         caption = Caption(
             f"game {self.episode}, seed {self._seed}",
@@ -227,8 +177,8 @@ class LiveGame:
             self.step * CONTROL_PERIOD,
             (game.env.score[0], game.env.score[1]),
             (game.env.faults[0], game.env.faults[1]),
-            (home.penalties.points, away.penalties.points),
-            phases=tuple(str(getattr(competitor.agent, "phase", "")) for competitor in game.competitors),
+            (home.count.points, away.count.points),
+            phases=tuple(seat.phase for seat in game.seats),
             news=news_of(recent),
         )
         violated = [
@@ -238,21 +188,22 @@ class LiveGame:
             if self.step and (values[part] > 0.0).any()
         ]
         failures = [
-            f"{name} failed: {competitor.failure}"
-            for name, competitor in zip(self._names, game.competitors, strict=True)
-            if competitor.failure
+            f"{name} failed: {seat.failure}" for name, seat in zip(self._names, game.seats, strict=True) if seat.failure
         ]
         return replace(caption, alarm="; ".join(failures or violated))
 
     def marks(self) -> list[Mark]:
         """See `Show`."""
-        game = self._game
-        base = game.env.base_observation
-        marks = predicted_path(base[:3], base[3:6])
-        for k in range(len(SIDES)):
-            action = game.competitors[k].action if self.step else None
-            marks += mallet_target(self.stage, k, game.competitors[k].agent, action)
-        return marks
+        return marks_of(self.stage, self._game.rollout)
+
+
+def marks_of(stage: Stage, rollout: Rollout) -> list[Mark]:
+    """Where the puck will go, and where each agent wants its mallet once it has acted."""
+    base = rollout.env.base_observation
+    marks = predicted_path(base[:3], base[3:6])
+    for k, seat in enumerate(rollout.seats if rollout.steps else ()):
+        marks += mallet_target(stage, k, seat.target, seat.action)
+    return marks
 
 
 def commanded(action: Any) -> tuple[Array, Array]:
@@ -270,23 +221,19 @@ def commanded(action: Any) -> tuple[Array, Array]:
     return (array, np.zeros_like(array)) if array.ndim == 1 else (array[0], array[1])
 
 
-def mallet_target(stage: Stage, player: int, agent: Any, action: Any) -> list[Mark]:
+def mallet_target(stage: Stage, player: int, wanted: Any, action: Any) -> list[Mark]:
     """Where an agent wants its mallet, and a line there from where it commands it now.
 
-    That is what the agent says as `target` (x and y on the table, seen from its own side), or else where the motion that it
-    commands would lead within `AHEAD`.
+    Where it does not say, that is where the motion that it commands would lead within `AHEAD`.
 
     Args:
         stage: Of the game.
         player: 0 or 1.
-        agent: It may have `target`.
-        action: What it sent last; None before the first step.
+        wanted: What it says: x and y on the table, seen from its own side, in [m]; None where it says nothing.
+        action: What it sent last.
     """
-    if action is None:
-        return []
     position, velocity = commanded(action)
     tip = stage.tip_position(player, position)[:2]
-    wanted = getattr(agent, "target", None)
     if wanted is None:
         wanted = stage.tip_position(player, position + AHEAD * velocity)[:2]
     else:

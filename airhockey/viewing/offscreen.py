@@ -17,7 +17,7 @@ BACKENDS = ("egl", "osmesa")
 KNOWN = (*BACKENDS, "glfw")
 """What `MUJOCO_GL` may name."""
 REMEDY = "on Debian and Ubuntu: apt-get install libegl1 libgl1 libosmesa6"
-_PROBE = """
+_TRIAL = """
 import mujoco
 model = mujoco.MjModel.from_xml_string("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")
 context = mujoco.GLContext(64, 64)
@@ -25,6 +25,7 @@ context.make_current()
 mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
 print("works", flush=True)
 """
+"""What has to work. A backend whose library is missing fails in any way, as with an AttributeError while MuJoCo is imported."""
 _PATIENCE = 60.0  # [s]
 
 
@@ -65,7 +66,7 @@ def new_context(width: int, height: int) -> Any:
 def why_not(backend: str) -> str | None:
     """Why a backend does not work on this machine; None where it does."""
     environment = {**os.environ, "MUJOCO_GL": backend, "PYOPENGL_PLATFORM": backend}
-    command = [sys.executable, "-c", _PROBE]
+    command = [sys.executable, "-P", "-c", _TRIAL]
     try:
         done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=_PATIENCE)
     except subprocess.TimeoutExpired:
@@ -73,4 +74,4 @@ def why_not(backend: str) -> str | None:
     if "works" in done.stdout:
         return None
     lines = [line for line in done.stderr.splitlines() if line.strip() and not line.startswith(" ")]
-    return (lines[-1] if lines else f"exit status {done.returncode}")[:160]
+    return (lines[-1] if lines else f"ended with status {done.returncode}")[:160]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from airhockey.viewing.marks import Mark, add_to_scene
 from airhockey.viewing.offscreen import new_context
-from airhockey.viewing.stage import Stage
+from airhockey.viewing.scene_view import Stage
 
 Picture = NDArray[np.uint8]
 QUALITIES = {"fast": (0, 0), "good": (1024, 0), "fine": (4096, 4)}

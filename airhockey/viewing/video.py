@@ -9,10 +9,10 @@ import numpy as np
 
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.errors import ConfigurationError
-from airhockey.viewing.filming import MOST_GIF_FRAMES, Film, check_film, open_film
 from airhockey.viewing.highlights import frame_steps, highlight_spans
 from airhockey.viewing.library import Entry
 from airhockey.viewing.recording import Recording
+from airhockey.viewing.video_writer import MOST_GIF_FRAMES, Film, check_film, open_film
 
 if TYPE_CHECKING:
     from airhockey.viewing.marks import Mark
@@ -109,7 +109,7 @@ def _render(
 ) -> None:
     from airhockey.viewing.overlay import Overlay
     from airhockey.viewing.pictures import Camera
-    from airhockey.viewing.stage import Stage
+    from airhockey.viewing.scene_view import Stage
 
     stage, overlay = Stage(recording.env), Overlay(options.width, options.height)
     with Camera(stage, options.width, options.height, options.inset, options.quality) as camera:

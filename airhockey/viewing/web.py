@@ -14,7 +14,7 @@ from typing import Any
 from mujoco.studio import launch_thread, viewer_protocol, web_viewer
 
 from airhockey.errors import ConfigurationError
-from airhockey.viewing.ears import Ears
+from airhockey.viewing.key_commands import Ears
 from airhockey.viewing.panel import Panel
 
 _STARTING = 30.0  # [s] that a viewer may take to begin

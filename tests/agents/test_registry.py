@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from airhockey import envs
-from airhockey.agents import AGENTS, AgentBase, build_agent
+from airhockey.agents import AGENTS, build_agent
 from airhockey.agents.hold import standing_still
 from airhockey.errors import ConfigurationError, MissingDependencyError
 
@@ -62,7 +62,6 @@ def test_a_folder_is_built_with_its_configuration(tmp_path, env_info, nested):
     assert agent.kwargs == {"my_gain": 0.5, "my_bias": 1}
     assert agent.interpolation_order == -1
     assert agent.draw_action(np.arange(20.0)).shape == (7,)
-    assert isinstance(AgentBase.load_agent(path, env_info), AgentBase)
 
 
 def test_two_submissions_do_not_mix(tmp_path, env_info):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -142,6 +143,17 @@ def test_a_failing_agent_is_status_3_with_its_reasons(hockey: Hockey, submission
     assert "stage [fright]" in out
 
 
+def test_the_table_says_which_episodes_took_too_long_and_by_which_clock(
+    hockey: Hockey, submission: Callable[..., str]
+) -> None:
+    agent = submission("if self.episodes == 1 and self.steps == 1: time.sleep(0.15)")
+    run = f"evaluate --env 3dof-defend --agent {agent} --isolate none --episodes 3 --jobs 1 --quiet"
+    for clock, late in (("wall", "1"), ("cpu", "0")):
+        _, out, _ = hockey(f"{run} --clock {clock}")
+        assert re.search(rf"episodes violating computation_time +{late} ", out)
+        assert all(re.search(rf"draw_action {name}, {clock} clock +[\d.]+ ms", out) for name in ("mean", "p99", "max"))
+
+
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_what_an_agent_prints_stays_out_of_the_json(hockey: Hockey, submission: Callable[..., str], jobs: str) -> None:
     agent = submission("if self.steps == 1: print('hello'); os.write(1, b'world')")
@@ -174,7 +186,7 @@ def test_a_users_disturbance_file_may_change_while_the_run_waits(hockey: Hockey,
     assert hockey("evaluate --resume --out run --json")[0] == 0
     status, _, err = hockey(f"{run} --resume")
     assert status == 2
-    assert "disturbances" in err
+    assert "disturbances" in err and "content was another" in err and ", not " not in err
 
 
 def test_ctrl_c_leaves_a_run_to_resume(submission: Callable[..., str], tmp_path: Path) -> None:

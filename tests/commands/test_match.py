@@ -48,7 +48,7 @@ SHORT = "--steps 60 --jobs 1"
 def test_bad_input_is_one_line_and_status_2_and_leaves_nothing(
     hockey: Hockey, tmp_path: Path, arguments: str, named: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("airhockey.evaluator.cluster._PATIENCE", "0.2s")
+    monkeypatch.setattr("airhockey.evaluator.engines.cluster._PATIENCE", "0.2s")
     (tmp_path / "file").touch()
     before = sorted(tmp_path.rglob("*"))
     status, out, err = hockey(arguments.replace("{tmp}", str(tmp_path)))

@@ -45,6 +45,21 @@ def test_a_killed_run_is_resumed(hockey: Hockey) -> None:
     assert status == 0 and "1 unseen episodes" in out
 
 
+def test_an_edited_disturbance_file_is_not_taken_for_the_one_that_the_run_began_with(hockey: Hockey) -> None:
+    profile = Path("mine.yaml")
+    profile.write_text("profile: mine\npuck: {position: 0.01}\n")
+    run = f"{SHORT} --steps 130 --episodes 1 --quiet --out run --disturbances {profile}"
+    assert hockey(run)[0] == 0
+    manifest = Path("run/train.json").read_bytes()
+    assert b'"position": 0.01' in manifest
+    profile.write_text("profile: mine\npuck: {position: 0.02}\n")
+    status, out, err = hockey(f"{run} --resume")
+    assert (status, out) == (2, "")
+    assert "disturbances" in err and "content was another" in err and ", not " not in err
+    assert hockey("train sac --resume --out run --episodes 1 --quiet")[0] == 0  # goes on with what it began with
+    assert Path("run/train.json").read_bytes() == manifest
+
+
 @pytest.mark.parametrize(
     ("arguments", "named"),
     [

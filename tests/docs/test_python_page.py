@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tools import needs_opencv
 
 from airhockey import envs
 
@@ -34,6 +35,7 @@ def test_the_agent_stays_where_it_is() -> None:
 
 
 def test_the_program_with_mushroom_rl() -> None:
+    needs_opencv()
     pytest.importorskip("mushroom_rl")
     names: dict[str, Any] = {}
     exec(MUSHROOM, names)

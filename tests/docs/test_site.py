@@ -1,6 +1,5 @@
 """The documentation as it is built: no dead link, nothing from elsewhere, every command and option described."""
 
-import os
 import re
 import shlex
 import shutil
@@ -13,13 +12,13 @@ from urllib.parse import unquote, urldefrag
 import click
 import pytest
 import yaml
+from tools import chromium
 
 from airhockey.cli import hockey
 
 ROOT = Path(__file__).parents[2]
 PAGES = [page for page in sorted((ROOT / "docs").rglob("*.md")) if page.name != "commands.md"]
 COMMANDS = hockey.list_commands(click.Context(hockey))
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 CODE_BLOCK = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -98,21 +97,19 @@ def test_nothing_is_fetched_from_elsewhere(site: dict[Path, Page]) -> None:
 
 def test_pages_are_whole_in_a_browser_on_a_phone(site: dict[Path, Page]) -> None:
     """Opened from the disk: every picture is there, nothing is asked of the network, nothing sticks out sideways."""
-    if CHROMIUM is None:
-        assert "CI" not in os.environ, "CI has to have Chromium: apt-get install chromium"
-        pytest.skip("there is no Chromium on this machine: apt-get install chromium")
+    path = chromium()
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox", "--disable-gpu"])
-        tab = chromium.new_page(viewport={"width": 375, "height": 800})
+        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox", "--disable-gpu"])
+        tab = browser.new_page(viewport={"width": 375, "height": 800})
         asked: list[str] = []
         tab.on("request", lambda request: asked.append(request.url))
         for path in site:
             tab.goto(path.as_uri())
             assert tab.evaluate("[...document.images].every(image => image.naturalWidth > 0)"), path.name
             assert tab.evaluate("document.documentElement.scrollWidth <= innerWidth"), path.name
-        chromium.close()
+        browser.close()
     assert [url for url in asked if not url.startswith(("file:", "data:"))] == []
 
 

@@ -15,7 +15,7 @@ KEYS = {
     "rl_info", "table", "puck", "mallet", "constraints", "robot",
 }  # fmt: skip
 ROBOT_KEYS = {
-    "n_joints", "base_frame", "ee_desired_height", "universal_height", "joint_pos_limit", "joint_vel_limit",
+    "n_joints", "base_frame", "ee_desired_height", "joint_pos_limit", "joint_vel_limit",
     "joint_acc_limit", "control_frequency", "robot_model", "robot_data",
 }  # fmt: skip
 
@@ -49,7 +49,7 @@ def test_the_robot_is_described(name):
     n = 7 if iiwa else 3
     assert robot["n_joints"] == n
     assert robot["ee_desired_height"] == (0.1645 if iiwa else 0.1)
-    assert robot["universal_height"] == (0.0645 if iiwa else None)
+    assert robot.get("universal_height") == (0.0645 if iiwa else None)
     velocity = np.radians([85, 85, 100, 75, 130, 135, 135]) if iiwa else np.pi * np.array([1 / 2, 1 / 2, 2 / 3])
     np.testing.assert_allclose(robot["joint_vel_limit"], [-velocity, velocity])
     factor = 10 if iiwa else 4
@@ -88,14 +88,15 @@ def test_the_boxes_are_those_of_the_challenge(name):
 @pytest.mark.parametrize(
     ("order", "shape"), [(1, (7,)), (2, (7,)), (3, (2, 7)), (4, (2, 7)), (5, (3, 7)), (-1, (2, 7)), (None, (20, 3, 7))]
 )
-def test_the_action_space_has_the_shape_of_the_order(order, shape):
+def test_an_action_has_the_shape_of_the_order_and_the_limits_of_the_robot(order, shape):
     env = envs.make("7dof-prepare", interpolation_order=order)
-    space, robot = env.env_info["rl_info"].action_space, env.env_info["robot"]
-    assert space.shape == space.low.shape == space.high.shape == shape
+    robot = env.env_info["robot"]
+    low, high = env.formats[0].limits(env.simulation.robot)
+    assert env.formats[0].shape == low.shape == high.shape == shape
     limits = np.stack([robot[f"joint_{kind}_limit"][1] for kind in ("pos", "vel", "acc")])
     expected = np.tile(limits, (20, 1, 1)) if order is None else limits[: shape[0]] if len(shape) == 2 else limits[0]
-    np.testing.assert_array_equal(space.high, expected)
-    np.testing.assert_array_equal(space.low, -expected)
+    np.testing.assert_array_equal(high, expected)
+    np.testing.assert_array_equal(low, -expected)
 
 
 def test_an_agent_that_changes_its_information_harms_nobody_else():

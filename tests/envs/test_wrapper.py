@@ -7,8 +7,14 @@ import mujoco
 import numpy as np
 import pytest
 from arms import ALL, standing, swinging
+from tools import needs_opencv
 
 from airhockey import envs
+
+
+@pytest.fixture(autouse=True)
+def opencv() -> None:
+    needs_opencv()
 
 
 @pytest.fixture(autouse=True)
@@ -31,7 +37,7 @@ def test_it_is_a_mushroom_environment_with_its_spaces(name):
     assert isinstance(info.observation_space, Box) and isinstance(info.action_space, Box)
     n = env.env_info["robot"]["n_joints"]
     assert info.observation_space.shape == (6 + 2 * n + (3 if env.env_info["n_agents"] == 2 else 0),)
-    assert info.action_space.shape == (2, n)
+    assert info.action_space.shape == (n * env.env_info["n_agents"],)
     assert (info.gamma, info.horizon) == (0.99, 45_000 if name == "tournament" else 500)
     assert env.env_name == name
 

@@ -7,9 +7,11 @@ import engine_functions
 import pytest
 
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator import cluster
-from airhockey.evaluator.cluster import Cluster, engine_of
-from airhockey.evaluator.engines import InProcess, Lost, Processes
+from airhockey.evaluator.engines import cluster
+from airhockey.evaluator.engines.cluster import Cluster, engine_of
+from airhockey.evaluator.engines.engine import InProcess
+from airhockey.evaluator.engines.pool import JobFailed
+from airhockey.evaluator.engines.processes import Processes
 
 
 def results(function: Any, jobs: Any) -> dict[Any, Any]:
@@ -17,7 +19,7 @@ def results(function: Any, jobs: Any) -> dict[Any, Any]:
 
 
 def test_jobs_give_results_and_one_that_kills_its_workers_is_lost() -> None:
-    lost = Lost("the worker process died 3 times over it")
+    lost = JobFailed("the worker process died 3 times over it")
     assert results(engine_functions.die_on_three, range(12)) == {n: n for n in range(12)} | {3: lost}
 
 
@@ -57,3 +59,13 @@ def test_which_engine() -> None:
     for wrong in ("local:", "local:0", "local:-1", "local:two", "local:²"):
         with pytest.raises(ConfigurationError, match="positive number"):
             engine_of(wrong, 1)
+
+
+def test_a_local_cluster_takes_nobody_without_its_certificate() -> None:
+    distributed = pytest.importorskip("distributed")
+    with cluster._connected(Cluster("local:1")) as client:
+        address = client.scheduler.address
+        assert address.startswith("tls://")
+        for stranger in (address, address.replace("tls://", "tcp://")):
+            with pytest.raises((OSError, TypeError)):
+                distributed.Client(stranger, timeout="2s")

@@ -5,7 +5,9 @@ import engine_functions
 import pytest
 
 from airhockey.errors import AirHockeyError
-from airhockey.evaluator.engines import InProcess, Lost, Processes, engine_for
+from airhockey.evaluator.engines.engine import InProcess, engine_for
+from airhockey.evaluator.engines.pool import JobFailed
+from airhockey.evaluator.engines.processes import Processes
 
 
 def results(engine: Any, function: Any, jobs: Any) -> dict[Any, Any]:
@@ -30,7 +32,7 @@ def test_workers_are_single_threaded_and_leave_ctrl_c_to_the_parent() -> None:
 
 
 def test_a_job_that_kills_its_workers_is_lost_and_the_others_are_not() -> None:
-    lost = Lost("the worker process died 3 times over it (signal SIGKILL)")
+    lost = JobFailed("the worker process died 3 times over it (signal SIGKILL)")
     expected = {n: n for n in range(10)} | {3: lost}
     assert results(Processes(2), engine_functions.die_on_three, range(10)) == expected
 
@@ -54,19 +56,38 @@ def test_the_function_is_closed_at_the_end(engine: Any, tmp_path: Path) -> None:
 
 
 def test_workers_that_cannot_start_are_an_error_not_a_thousand_lost_jobs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("airhockey.evaluator.workers.get_context", lambda _: _NoUnpickling())
+    monkeypatch.setattr("airhockey.evaluator.engines.workers.get_context", lambda _: _NoUnpickling())
     with pytest.raises(AirHockeyError, match="do not start"):
         results(Processes(1), engine_functions.square, range(1000))
 
 
-class _NoUnpickling:
-    """A context whose processes die before they say hello."""
+def test_a_worker_that_dies_while_it_starts_costs_a_retry(monkeypatch: pytest.MonkeyPatch) -> None:
+    context = _NoUnpickling(failures=2)
+    monkeypatch.setattr("airhockey.evaluator.engines.workers.get_context", lambda _: context)
+    assert results(Processes(2), engine_functions.square, range(5)) == {n: n * n for n in range(5)}
+    assert context.failures <= 0
 
-    def __init__(self) -> None:
+
+def test_nothing_is_imported_from_the_present_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("pickle", "threading", "numpy", "socket"):
+        (tmp_path / f"{name}.py").write_text(f"open({str(tmp_path / 'mark')!r}, 'w')\nraise ImportError")
+    monkeypatch.chdir(tmp_path)
+    assert results(Processes(2), engine_functions.square, range(3)) == {0: 0, 1: 1, 2: 4}
+    assert not (tmp_path / "mark").exists()
+
+
+class _NoUnpickling:
+    """A context whose first processes die before they say hello."""
+
+    def __init__(self, failures: int = 1000) -> None:
+        self.failures = failures
         import multiprocessing
 
         self._context = multiprocessing.get_context("spawn")
         self.Pipe = self._context.Pipe
 
     def Process(self, target: Any, args: Any, daemon: bool) -> Any:
+        self.failures -= 1
+        if self.failures < 0:
+            return self._context.Process(target=target, args=args, daemon=daemon)
         return self._context.Process(target=exit, args=(5,), daemon=daemon)

@@ -7,8 +7,12 @@ import numpy as np
 import pytest
 
 from airhockey import envs
-from airhockey.evaluator.episode import Recorder, play, violated_steps
-from airhockey.evaluator.records import Episode, Job
+from airhockey.evaluator.isolation.handle import LocalAgent
+from airhockey.evaluator.play.episode import play
+from airhockey.evaluator.play.recorder import Recorder, violated_steps
+from airhockey.evaluator.play.rollout import Rollout
+from airhockey.evaluator.play.seat import Care, Seat
+from airhockey.evaluator.runs.records import Episode, Job
 
 ENV = envs.make("3dof-hit")
 SIZE = ENV.reset(seed=0).size
@@ -32,10 +36,11 @@ class Agent:
         return np.array([position + np.array([0.01, 0, 0]), 0 * position])
 
 
-def played(agent: Any, disturbed: bool = False) -> Episode:
-    return play(
-        Job("3dof-hit", 4), ENV, agent, np.random.SeedSequence(1), time.perf_counter, Recorder(ENV, SIZE, disturbed)
-    )
+def played(agent: Any, clock: Callable[[], float] = time.perf_counter) -> Episode:
+    seat = Seat(LocalAgent(agent), ENV.formats[0], Care())
+    seat.clock = clock
+    rollout = Rollout(ENV, [seat], np.random.SeedSequence(1))
+    return play(Job("3dof-hit", 4), rollout, Recorder(ENV, SIZE, False))
 
 
 def throw(error: BaseException) -> Callable[[], Any]:
@@ -124,8 +129,7 @@ def test_time_is_measured_around_draw_action_alone() -> None:
             now[0] += 1.0 if self.step != 4 else 4.0
             return super().draw_action(observation)
 
-    recorder = Recorder(ENV, SIZE, False)
-    episode = play(Job("3dof-hit", 4), ENV, Ticks(), np.random.SeedSequence(1), lambda: now[0], recorder)
+    episode = played(Ticks(), lambda: now[0])
     times = episode.trajectory["computation_time"]
     assert times[4] == episode.record.computation_time.max == 4.0
     assert set(np.delete(times, 4)) == {1.0}

@@ -3,8 +3,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from airhockey.envs.editions import edition
-from airhockey.evaluator.judging import penalty, score, violated_episodes, wilson_interval, worst_class
-from airhockey.evaluator.records import EpisodeRecord, StepTime
+from airhockey.evaluator.judging.tasks import judge, penalty, score, violated_episodes, wilson_interval, worst_class
+from airhockey.evaluator.runs.records import EpisodeRecord, StepTime
 
 RULES = edition("2023")
 
@@ -62,6 +62,15 @@ def test_violations_are_counted_in_episodes() -> None:
 )
 def test_classes_at_their_limits(points: float, name: str) -> None:
     assert RULES.deployability.class_of(points) == name
+
+
+def test_a_task_is_judged_as_it_is_and_at_the_rate_of_an_official_evaluation() -> None:
+    """Two episodes, 3 and 2 points: 5 are deployable, 2500 in 1000 episodes are not."""
+    verdict = judge([record({"ee_constr": 1, "unheard_of": 4}), record(mean=0.021, longest=0.03)], RULES)
+    assert (verdict.episodes, verdict.penalty, verdict.late) == (2, 5.0, 1)
+    assert (verdict.deployability, verdict.official_class) == ("Deployable", "Non-deployable")
+    assert verdict.violations == {"ee_constr": 1, "unheard_of": 1}
+    assert (verdict.success, verdict.failures) == (0.0, 0)
 
 
 def test_the_worst_task_decides() -> None:

@@ -8,8 +8,9 @@ import pytest
 
 from airhockey.evaluator import Options, RunResult, TaskResult, begin, evaluate
 from airhockey.evaluator.official import write_official
-from airhockey.evaluator.store import read_journal
-from airhockey.evaluator.trajectories import read_episodes
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.evaluator.runs.records import EpisodeRecord
+from airhockey.evaluator.runs.trajectories import read_episodes
 
 
 def test_the_official_files_say_what_was_stored(options: Options, tmp_path: Path) -> None:
@@ -60,5 +61,5 @@ def test_a_run_without_a_step(submission: Callable[..., str], tmp_path: Path) ->
     folder = write_official(tmp_path / "run", result)
     assert pickle.loads((folder / "3dof-hit" / "dataset.pkl").read_bytes()) == []
     assert np.load(folder / "3dof-hit" / "computation_time.npy").size == 0
-    assert len(read_journal(tmp_path / "run")) == 2
+    assert len(read_journal(tmp_path / "run", EpisodeRecord).records) == 2
     assert result.computation_time.max == pytest.approx(0.0)

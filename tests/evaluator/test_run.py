@@ -14,11 +14,12 @@ from outcomes import ENV, outcome, without_time
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator import Options, Processes, begin, evaluate, play_episode, take_up
-from airhockey.evaluator.player import Player
-from airhockey.evaluator.records import Job
-from airhockey.evaluator.store import RunFolder, read_journal
-from airhockey.evaluator.trajectories import read_episode
+from airhockey.evaluator import Options, Processes, begin, evaluate, play_episode, resume
+from airhockey.evaluator.play.episode import EpisodePlayer
+from airhockey.evaluator.runs.episode_folder import EpisodeFolder
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.evaluator.runs.records import EpisodeRecord, Job
+from airhockey.evaluator.runs.trajectories import read_episode
 
 
 @pytest.fixture
@@ -67,11 +68,11 @@ def test_a_run_taken_up_in_the_middle(options: Options, one_job: Path, tmp_path:
 
     with pytest.raises(KeyboardInterrupt):
         evaluate(begin(options, tmp_path / "run"), None, stop_after_two)
-    assert [record.index for record in read_journal(tmp_path / "run")] == [0, 1]
-    evaluate(take_up(tmp_path / "run"), Processes(2), lambda record: seen.append(record.index))
+    assert [record.index for record in read_journal(tmp_path / "run", EpisodeRecord).records] == [0, 1]
+    evaluate(resume(tmp_path / "run"), Processes(2), lambda record: seen.append(record.index))
     assert sorted(seen) == list(range(6))
     assert outcome(tmp_path / "run") == outcome(one_job)
-    result = evaluate(take_up(tmp_path / "run"), None, lambda record: seen.append(record.index))
+    result = evaluate(resume(tmp_path / "run"), None, lambda record: seen.append(record.index))
     assert len(seen) == 6  # a finished run is only reported
     assert msgspec.json.decode((tmp_path / "run" / "result.json").read_bytes()) == msgspec.to_builtins(result)
 
@@ -83,10 +84,10 @@ def test_killed_and_resumed(options: Options, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "airhockey.cli", "evaluate", "--out", str(tmp_path / "run")]
     fresh = ["--env", ENV, "--agent", options.agent, "--episodes", "60", "--seed", "3", "--disturbances", "server"]
     with subprocess.Popen([*command, *fresh, "--jobs", "2", "--quiet"], stdout=subprocess.DEVNULL) as process:
-        wait_for(lambda: len(read_journal(tmp_path / "run")) > 0)
+        wait_for(lambda: len(read_journal(tmp_path / "run", EpisodeRecord).records) > 0)
         children = children_of(process.pid)
         process.kill()
-    finished = {record.index for record in read_journal(tmp_path / "run")}
+    finished = {record.index for record in read_journal(tmp_path / "run", EpisodeRecord).records}
     assert len(finished) < 60
     wait_for(lambda: not any(map(is_running, children)))
     resumed = subprocess.run(
@@ -97,13 +98,13 @@ def test_killed_and_resumed(options: Options, tmp_path: Path) -> None:
 
 
 def test_another_run_is_not_taken_up(options: Options, one_job: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    take_up(one_job, {"seed": 3, "disturbances": "server"}).__exit__()
-    for name, value in {"seed": 4, "episodes": 7, "clock": "cpu", "disturbances": "harsh", "agent": "hold"}.items():
+    resume(one_job, {"seed": 3, "disturbances": "server"}).__exit__()
+    for name, value in {"seed": 4, "episodes": 7, "clock": "wall", "disturbances": "harsh", "agent": "hold"}.items():
         with pytest.raises(ConfigurationError, match=f"has {name}"):
-            take_up(one_job, {name: value})
+            resume(one_job, {name: value})
     monkeypatch.setattr("airhockey.envs.versions", lambda: {"mujoco": "5.0.0"})
     with pytest.raises(ConfigurationError, match=r"began with mujoco 4\.0\.\d+, but this is 5\.0\.0"):
-        take_up(one_job)
+        resume(one_job)
 
 
 @pytest.mark.parametrize(
@@ -119,7 +120,7 @@ def test_a_failing_agent_fails_its_episodes_and_the_run_goes_on(
     submission: Callable[..., str], tmp_path: Path, behaviour: str, reason: str
 ) -> None:
     result = evaluate(begin(Options(environments=(ENV,), agent=submission(behaviour), episodes=4), tmp_path / "run"))
-    records = read_journal(tmp_path / "run")
+    records = read_journal(tmp_path / "run", EpisodeRecord).records
     errors = [record.error for record in records if record.error is not None]
     assert errors
     assert all(error.startswith(reason) for error in errors)
@@ -132,7 +133,7 @@ def test_a_builder_that_fails(submission: Callable[..., str], tmp_path: Path, en
     agent = submission(building="raise OSError('no weights')")
     result = evaluate(begin(Options(environments=(ENV,), agent=agent, episodes=4), tmp_path / "run"), engine)
     assert (result.agent_errors, result.success, result.penalty) == (4, 0.0, 0.0)
-    errors = {record.error for record in read_journal(tmp_path / "run")}
+    errors = {record.error for record in read_journal(tmp_path / "run", EpisodeRecord).records}
     assert len(errors) == 1
     assert errors.pop().startswith("build_agent: OSError: no weights (agent_builder.py:")
 
@@ -140,7 +141,7 @@ def test_a_builder_that_fails(submission: Callable[..., str], tmp_path: Path, en
 def test_an_agent_that_kills_its_process_fails_that_episode(submission: Callable[..., str], tmp_path: Path) -> None:
     agent = submission("if observation[1] < -0.3: os.kill(os.getpid(), signal.SIGSEGV)")
     result = evaluate(begin(Options(environments=(ENV,), agent=agent, episodes=5), tmp_path / "run"), Processes(2))
-    errors = [record.error for record in read_journal(tmp_path / "run") if record.error]
+    errors = [record.error for record in read_journal(tmp_path / "run", EpisodeRecord).records if record.error]
     assert 0 < len(errors) < 5
     assert set(errors) == {"the worker process died 3 times over it (signal SIGSEGV)"}
     assert result.agent_errors == len(errors)
@@ -172,7 +173,7 @@ def test_a_wrong_option_leaves_nothing_behind(options: Options, tmp_path: Path) 
         with pytest.raises(ConfigurationError):
             begin(changed(options, **{name: value}), tmp_path / "run")
     assert not (tmp_path / "run").exists()
-    assert isinstance(begin(options, tmp_path / "run"), RunFolder)
+    assert isinstance(begin(options, tmp_path / "run"), EpisodeFolder)
 
 
 def wait_for(condition: Callable[[], bool], seconds: float = 20.0) -> None:
@@ -214,7 +215,7 @@ def test_a_workers_memory_has_a_bound(tmp_path: Path) -> None:
 
 def test_memory_does_not_grow_with_the_episodes() -> None:
     options = Options(environments=(ENV,), agent="hold", disturbances="server")
-    player = Player(options, load_disturbances("server"))
+    player = EpisodePlayer(options, load_disturbances("server"))
     for index in range(20):
         player(Job(ENV, index))
     before = memory("self", "VmRSS")

@@ -5,11 +5,13 @@ import pytest
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator import store
-from airhockey.evaluator.player import failed
-from airhockey.evaluator.records import Episode, EpisodeRecord, Job, Manifest, Options
-from airhockey.evaluator.store import RunFolder, read_journal
-from airhockey.evaluator.trajectories import read_episode, read_episodes, read_steps
+from airhockey.evaluator.play.episode import failed
+from airhockey.evaluator.runs import episode_folder as store
+from airhockey.evaluator.runs.episode_folder import EpisodeFolder
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.evaluator.runs.manifest import Manifest
+from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, Options
+from airhockey.evaluator.runs.trajectories import read_episode, read_episodes, read_steps
 
 MANIFEST = Manifest(
     options=Options(environments=("7dof-hit",)), profile=load_disturbances("ideal"), versions={}, created="now"
@@ -37,11 +39,11 @@ def same(trajectory: dict, expected: dict) -> bool:
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> RunFolder:
-    return RunFolder.create(tmp_path / "run", MANIFEST)
+def folder(tmp_path: Path) -> EpisodeFolder:
+    return EpisodeFolder.create(tmp_path / "run", MANIFEST)
 
 
-def fill(folder: RunFolder, *indices: int) -> Path:
+def fill(folder: EpisodeFolder, *indices: int) -> Path:
     """Each index in a segment of its own."""
     with folder:
         for index in indices:
@@ -50,7 +52,7 @@ def fill(folder: RunFolder, *indices: int) -> Path:
     return folder.path
 
 
-def test_what_was_added_is_read_back_in_order(folder: RunFolder) -> None:
+def test_what_was_added_is_read_back_in_order(folder: EpisodeFolder) -> None:
     with folder:
         for index in (4, 0, 11, 2):
             folder.add(episode(index))
@@ -71,7 +73,7 @@ def test_what_was_added_is_read_back_in_order(folder: RunFolder) -> None:
         read_episode(file, "7dof-hit", 99)
 
 
-def test_episodes_without_a_step_are_kept_too(folder: RunFolder) -> None:
+def test_episodes_without_a_step_are_kept_too(folder: EpisodeFolder) -> None:
     with folder:
         for index in range(3):
             folder.add(failed(Job("7dof-hit", index), "no agent"))
@@ -85,7 +87,7 @@ def test_episodes_without_a_step_are_kept_too(folder: RunFolder) -> None:
     assert all(len(values) == 0 for values in read[4].trajectory.values())
 
 
-def test_a_run_of_failures_alone_is_kept(folder: RunFolder) -> None:
+def test_a_run_of_failures_alone_is_kept(folder: EpisodeFolder) -> None:
     with folder:
         folder.add(failed(Job("7dof-hit", 0), "no agent"))
         folder.merge()
@@ -93,31 +95,31 @@ def test_a_run_of_failures_alone_is_kept(folder: RunFolder) -> None:
     assert read_steps(folder.trajectories, "7dof-hit", "computation_time").size == 0
 
 
-def test_a_torn_journal_is_mended_from_the_segments(folder: RunFolder) -> None:
+def test_a_torn_journal_is_mended_from_the_segments(folder: EpisodeFolder) -> None:
     path = fill(folder, 0, 1, 2)
     journal = path / "journal.jsonl"
     journal.write_bytes(journal.read_bytes()[:-30])
-    assert len(read_journal(path)) == 2
-    with RunFolder.open(path) as again:
+    assert len(read_journal(path, EpisodeRecord).records) == 2
+    with EpisodeFolder.open(path) as again:
         assert again.done == {Job("7dof-hit", index) for index in range(3)}
-    assert read_journal(path) == [episode(index).record for index in range(3)]
+    assert read_journal(path, EpisodeRecord).records == [episode(index).record for index in range(3)]
 
 
-def test_a_line_whose_segment_is_broken_does_not_count(folder: RunFolder) -> None:
+def test_a_line_whose_segment_is_broken_does_not_count(folder: EpisodeFolder) -> None:
     path = fill(folder, 0, 1, 2)
     segment = path / "trajectories" / "000001.h5"
     segment.write_bytes(segment.read_bytes()[:200])
-    with RunFolder.open(path) as again:
+    with EpisodeFolder.open(path) as again:
         assert again.done == {Job("7dof-hit", 0), Job("7dof-hit", 2)}
         again.add(episode(1))
         again.merge()
     assert [item.record.index for item in read_episodes(again.trajectories, "7dof-hit")] == [0, 1, 2]
 
 
-def test_half_a_segment_never_counts(folder: RunFolder) -> None:
+def test_half_a_segment_never_counts(folder: EpisodeFolder) -> None:
     path = fill(folder, 0)
     (path / "trajectories" / "000001.part").write_bytes(b"half")
-    with RunFolder.open(path) as again:
+    with EpisodeFolder.open(path) as again:
         assert again.done == {Job("7dof-hit", 0)}
         again.add(episode(1))
         again.merge()
@@ -125,51 +127,51 @@ def test_half_a_segment_never_counts(folder: RunFolder) -> None:
 
 
 def test_killed_between_the_merge_and_the_removal_of_the_segments(
-    folder: RunFolder, monkeypatch: pytest.MonkeyPatch
+    folder: EpisodeFolder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = fill(folder, 0, 1)
     monkeypatch.setattr(store.shutil, "rmtree", lambda *_, **__: None)
-    with RunFolder.open(path) as killed:
+    with EpisodeFolder.open(path) as killed:
         killed.merge()
     monkeypatch.undo()
-    with RunFolder.open(path) as again:
+    with EpisodeFolder.open(path) as again:
         assert again.done == {Job("7dof-hit", 0), Job("7dof-hit", 1)}
         again.merge()
     assert [item.record.index for item in read_episodes(again.trajectories, "7dof-hit")] == [0, 1]
     assert not (path / "trajectories").exists()
 
 
-def test_one_process_at_a_time(folder: RunFolder) -> None:
+def test_one_process_at_a_time(folder: EpisodeFolder) -> None:
     with pytest.raises(ConfigurationError, match="another process"):
-        RunFolder.open(folder.path)
+        EpisodeFolder.open(folder.path)
     with folder:
         pass
-    with RunFolder.open(folder.path):
+    with EpisodeFolder.open(folder.path):
         pass
 
 
 def test_a_folder_that_holds_something_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("precious")
     with pytest.raises(ConfigurationError, match="not empty"):
-        RunFolder.create(tmp_path, MANIFEST)
+        EpisodeFolder.create(tmp_path, MANIFEST)
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
 
 
 def test_a_broken_manifest_is_named(tmp_path: Path) -> None:
     (tmp_path / "run.json").write_text("{")
     with pytest.raises(ConfigurationError, match=r"run\.json"):
-        RunFolder.open(tmp_path)
+        EpisodeFolder.open(tmp_path)
 
 
-def test_a_full_disk_is_one_clear_error(folder: RunFolder, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_full_disk_is_one_clear_error(folder: EpisodeFolder, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
     fill(folder, 0)
-    with RunFolder.open(folder.path) as again:
+    with EpisodeFolder.open(folder.path) as again:
         monkeypatch.setattr(store.trajectories, "write", full)
         with pytest.raises(AirHockeyError, match="No space left"):
             again.add(episode(1))
         monkeypatch.undo()
-    with RunFolder.open(folder.path) as mended:
+    with EpisodeFolder.open(folder.path) as mended:
         assert mended.done == {Job("7dof-hit", 0)}

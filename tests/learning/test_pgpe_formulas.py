@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from airhockey.errors import ConfigurationError
+from airhockey.learning.diverged import DivergedError
 from airhockey.learning.pgpe.evolution import CmaSearch
 from airhockey.learning.pgpe.hyperpolicy import Hyperpolicy
 from airhockey.learning.pgpe.penalty_budget import PenaltyBudget
 from airhockey.learning.pgpe.schedule import learning_rate
-from airhockey.learning.pgpe.search import BASELINES, DivergedError, Pgpe, check_progress
+from airhockey.learning.pgpe.search import BASELINES, Pgpe, check_progress
 
 MEAN, SIGMA = np.array([0.3, -1.2, 4.0]), np.array([0.5, 0.02, 3.0])
 POLICY = Hyperpolicy(MEAN, np.log(SIGMA))

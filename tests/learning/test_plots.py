@@ -6,9 +6,10 @@ from matplotlib.figure import Figure
 
 from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.errors import ConfigurationError
+from airhockey.evaluator.runs.journal import read_journal
 from airhockey.learning.pgpe import plots, training
-from airhockey.learning.pgpe.folder import read_iterations, read_training
-from airhockey.learning.pgpe.records import Outcome, Settings
+from airhockey.learning.pgpe.folder import TrainingFolder
+from airhockey.learning.pgpe.records import Iteration, Outcome, Settings
 from airhockey.learning.pgpe.sweep import sweep
 
 NAMES = ("hit.theta.0", "hit.theta.2")
@@ -17,7 +18,7 @@ NAMES = ("hit.theta.0", "hit.theta.2")
 class Slope:
     """An engine for which less of everything is better."""
 
-    def shift(self, function):
+    def pool(self, function):
         return self
 
     def __enter__(self):
@@ -49,7 +50,7 @@ def test_every_picture_is_drawn(run, tmp_path, form, begins):
 
 
 def test_the_curves_are_the_journals(run):
-    settings, iterations = read_training(run).settings, read_iterations(run)
+    settings, iterations = TrainingFolder.read(run).options, read_journal(run, Iteration).records
     figure = Figure()
     plots.draw_learning_curve(figure, settings, iterations)
     returns, success, penalty = (axis.lines[0].get_ydata() for axis in figure.axes)
@@ -64,7 +65,7 @@ def test_the_curves_are_the_journals(run):
 
 def test_the_histogram_counts_every_update(run):
     figure = Figure()
-    plots.draw_updates(figure, read_training(run).settings, read_iterations(run))
+    plots.draw_updates(figure, TrainingFolder.read(run).options, read_journal(run, Iteration).records)
     for axis in figure.axes:
         assert sum(bar.get_height() for bar in axis.patches) == 4
 
@@ -74,7 +75,7 @@ def test_a_moving_average_by_hand():
 
 
 def test_a_sweep_plays_the_same_episodes_with_every_value(run):
-    manifest, mean = read_training(run), read_iterations(run)[-1].mean
+    manifest, mean = TrainingFolder.read(run), read_journal(run, Iteration).records[-1].mean
     points = sweep(manifest, mean, "hit.theta.2", points=2, episodes=2)
     assert [point.value for point in points] == [0.0, 0.03]
     assert points[0].returns != points[1].returns and points[0].deviation > 0.0

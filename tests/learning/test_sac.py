@@ -10,13 +10,16 @@ import torch
 from gymnasium.utils.env_checker import check_env
 
 from airhockey.agents.atacom.network import Network
+from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
+from airhockey.learning.diverged import DivergedError
 from airhockey.learning.sac.algorithms import OAC, MirroredReplay
 from airhockey.learning.sac.folder import SkillFolder
 from airhockey.learning.sac.records import Line, Settings
 from airhockey.learning.sac.skill_tasks import DefendEnv, HomeEnv
-from airhockey.learning.sac.trainer import DivergedError, Trainer, make_env, make_model
+from airhockey.learning.sac.trainer import Trainer, make_env, make_model
 
+IDEAL = load_disturbances("ideal")
 SHORT = Settings(
     task="home", robot="3dof", steps=320, warm_up=150, hidden=16, batch=32, log_every=2, save_every=2, seed=3
 )
@@ -27,7 +30,7 @@ def parameters_of(trainer):
 
 
 def trained(path, settings):
-    folder = SkillFolder.create(path, settings)
+    folder = SkillFolder.begin(settings, path)
     try:
         trainer = Trainer(folder)
         trainer.run()
@@ -103,7 +106,7 @@ def test_the_same_seed_gives_the_same_run(finished, tmp_path):
 
 def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(finished, tmp_path):
     path, trainer = finished
-    stopped, lines = SkillFolder.create(tmp_path / "stopped", SHORT), []
+    stopped, lines = SkillFolder.begin(SHORT, tmp_path / "stopped"), []
 
     def stop(line):
         lines.append(line)
@@ -113,7 +116,7 @@ def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(finished, tmp_path
     with pytest.raises(KeyboardInterrupt):
         Trainer(stopped).run(stop)
     stopped.close()
-    resumed = SkillFolder.open(tmp_path / "stopped")
+    resumed = SkillFolder.resume(tmp_path / "stopped")
     torch.manual_seed(99)
     np.random.seed(99)
     goes_on = Trainer(resumed)
@@ -152,7 +155,7 @@ def test_oac_without_optimism_is_sac(finished, tmp_path):
 def test_oac_explores_where_the_upper_bound_grows():
     """μ_E − μ_T against finite differences of the upper bound; its Kullback–Leibler divergence is δ."""
     settings = msgspec.structs.replace(SHORT, algorithm="oac", optimism=0.7)
-    model = make_model(settings, make_env(settings))
+    model = make_model(settings, make_env(settings, IDEAL))
     seen = torch.linspace(-2.0, 2.0, 12)[None]
     mean, log_std, _ = model.actor.get_action_dist_params(seen)
     mean, log_std = mean.detach(), log_std.detach()
@@ -175,7 +178,7 @@ def test_oac_learns_differently_from_sac(finished, tmp_path):
 
 
 def test_half_of_a_batch_is_seen_in_the_mirror():
-    env = make_env(SHORT)
+    env = make_env(SHORT, IDEAL)
     mirror = np.where(np.arange(12) % 2 == 0, 1.0, -1.0)
     buffer = MirroredReplay(
         4, env.observation_space, env.action_space, observation_mirror=mirror, action_mirror=[1.0, -1.0]
@@ -193,7 +196,7 @@ def test_half_of_a_batch_is_seen_in_the_mirror():
 
 
 def test_a_return_that_is_not_finite_stops_the_run_and_keeps_the_checkpoint(tmp_path):
-    folder = SkillFolder.create(tmp_path / "run", SHORT)
+    folder = SkillFolder.begin(SHORT, tmp_path / "run")
     trainer = Trainer(folder)
     trainer.save()
     good = (tmp_path / "run" / "checkpoint.pkl").read_bytes()
@@ -205,7 +208,7 @@ def test_a_return_that_is_not_finite_stops_the_run_and_keeps_the_checkpoint(tmp_
 
 
 def test_parameters_that_are_not_finite_stop_the_run(tmp_path):
-    folder = SkillFolder.create(tmp_path / "run", SHORT)
+    folder = SkillFolder.begin(SHORT, tmp_path / "run")
     trainer = Trainer(folder)
     trainer.progress.owed = 1.0
     trainer.model.train = lambda *_: trainer.model.actor.mu.bias.data.fill_(float("inf"))
@@ -214,12 +217,24 @@ def test_parameters_that_are_not_finite_stop_the_run(tmp_path):
     folder.close()
 
 
+def test_a_run_goes_on_with_the_disturbances_that_it_began_with(tmp_path):
+    profile = tmp_path / "mine.yaml"
+    profile.write_text("profile: mine\npuck: {position: 0.01}\n")
+    settings = msgspec.structs.replace(SHORT, disturbances=str(profile))
+    SkillFolder.begin(settings, tmp_path / "run").close()
+    began_with = load_disturbances(str(profile))
+    profile.write_text("profile: mine\npuck: {position: 0.5}\n")
+    with SkillFolder.resume(tmp_path / "run") as folder:
+        assert folder.manifest.profile == began_with
+        assert Trainer(folder).env.unwrapped.environment.disturbances == began_with
+
+
 def test_other_software_cannot_go_on_with_a_run(finished):
     path, _ = finished
     manifest = (path / "train.json").read_text()
     try:
         (path / "train.json").write_text(manifest.replace('"mujoco": "', '"mujoco": "0.'))
-        with pytest.raises(ConfigurationError, match="begun with mujoco 0"):
-            SkillFolder.open(path)
+        with pytest.raises(ConfigurationError, match="began with mujoco 0"):
+            SkillFolder.resume(path)
     finally:
         (path / "train.json").write_text(manifest)

@@ -14,12 +14,13 @@ import pytest
 
 from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator.engines import InProcess, Processes
+from airhockey.evaluator.engines.engine import InProcess
+from airhockey.evaluator.engines.processes import Processes
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.learning.diverged import DivergedError
 from airhockey.learning.pgpe import training
-from airhockey.learning.pgpe.folder import read_iterations
-from airhockey.learning.pgpe.records import Outcome, RolloutJob, Settings
+from airhockey.learning.pgpe.records import Iteration, Outcome, RolloutJob, Settings
 from airhockey.learning.pgpe.rollouts import Rollouts
-from airhockey.learning.pgpe.search import DivergedError
 from airhockey.learning.pgpe.trainable import ranges, read, replaced
 
 TUNED = thesis_parameters("tuned")
@@ -41,7 +42,7 @@ class Bowl(AbstractContextManager):
     def __init__(self, breaks_at=10**6, outcome=None):
         self.breaks_at, self.outcome, self.jobs = breaks_at, outcome, []
 
-    def shift(self, function):
+    def pool(self, function):
         return self
 
     def __exit__(self, *_):
@@ -56,7 +57,7 @@ class Bowl(AbstractContextManager):
 
 def run(path, bowl, **others):
     training.train(training.begin(settings(**others), TUNED, path), bowl)
-    return read_iterations(path)
+    return read_journal(path, Iteration).records
 
 
 def test_parameters_get_better_and_are_left_as_a_file(tmp_path):
@@ -86,8 +87,8 @@ def test_a_run_taken_up_goes_on_as_if_nothing_had_happened(tmp_path, optimizer, 
     run(tmp_path / "parts", Bowl(), iterations=2, **others)
     with (tmp_path / "parts" / "journal.jsonl").open("ab") as journal:
         journal.write(b'{"iteration":2,"theta":[[0.0')  # what a kill in the middle of a line leaves
-    training.train(training.take_up(tmp_path / "parts", {"iterations": 6}), Bowl())
-    parts = read_iterations(tmp_path / "parts")
+    training.train(training.resume(tmp_path / "parts", {"iterations": 6}), Bowl())
+    parts = read_journal(tmp_path / "parts", Iteration).records
     assert [one.theta for one in parts] == [one.theta for one in whole]
     assert parts[-1].mean == whole[-1].mean and parts[-1].sigma == whole[-1].sigma
     assert len((tmp_path / "parts" / "progress.csv").read_text().splitlines()) == 7
@@ -100,7 +101,7 @@ def test_a_run_taken_up_goes_on_as_if_nothing_had_happened(tmp_path, optimizer, 
 def test_a_diverging_run_stops_and_keeps_what_was_good(tmp_path, outcome, message):
     with pytest.raises(DivergedError, match=message):
         run(tmp_path, Bowl(breaks_at=2, outcome=outcome), iterations=9)
-    iterations = read_iterations(tmp_path)
+    iterations = read_journal(tmp_path, Iteration).records
     assert len(iterations) == 2
     left = thesis_parameters(tmp_path / "parameters.yaml")
     assert read(left, ["hit.theta.0", "hit.theta.2"]) == pytest.approx(iterations[-1].mean)
@@ -109,7 +110,7 @@ def test_a_diverging_run_stops_and_keeps_what_was_good(tmp_path, outcome, messag
 def test_a_sigma_that_explodes_stops_the_run(tmp_path):
     with pytest.raises(DivergedError, match=r"σ (exploded|collapsed)"):
         run(tmp_path, Bowl(), iterations=50, learning_rate=60.0)
-    assert all(np.isfinite(one.mean).all() for one in read_iterations(tmp_path))
+    assert all(np.isfinite(one.mean).all() for one in read_journal(tmp_path, Iteration).records)
 
 
 def test_a_journal_of_another_search_is_not_taken_up(tmp_path):
@@ -117,13 +118,13 @@ def test_a_journal_of_another_search_is_not_taken_up(tmp_path):
     manifest = (tmp_path / "train.json").read_text()
     (tmp_path / "train.json").write_text(manifest.replace('"seed": 0', '"seed": 1'))
     with pytest.raises(AirHockeyError, match="iteration 0 of the journal"):
-        training.train(training.take_up(tmp_path, {"iterations": 3}), Bowl())
+        training.train(training.resume(tmp_path, {"iterations": 3}), Bowl())
 
 
 def test_only_the_number_of_iterations_may_change(tmp_path):
     run(tmp_path, Bowl(), iterations=2)
     with pytest.raises(ConfigurationError, match="candidates 4, not 5"):
-        training.take_up(tmp_path, {"candidates": 5})
+        training.resume(tmp_path, {"candidates": 5})
 
 
 @pytest.mark.parametrize(
@@ -153,7 +154,7 @@ SAME = ["--iterations", "3", "--candidates", "2", "--episodes", "1", "--jobs", "
 
 
 def last_mean(path: Path) -> tuple[float, ...]:
-    iterations = read_iterations(path)
+    iterations = read_journal(path, Iteration).records
     assert len(iterations) == 3
     return iterations[-1].mean
 
@@ -171,19 +172,21 @@ def test_same_seed_same_parameters_whatever_the_jobs_and_after_a_kill(tmp_path):
         time.sleep(0.01)
     os.kill(killed.pid, signal.SIGKILL)
     killed.wait()
-    assert 1 <= len(read_iterations(tmp_path / "killed")) <= 3
-    training.train(training.take_up(tmp_path / "killed"), InProcess())
+    assert 1 <= len(read_journal(tmp_path / "killed", Iteration).records) <= 3
+    training.train(training.resume(tmp_path / "killed"), InProcess())
     assert last_mean(tmp_path / "killed") == last_mean(tmp_path / "one")
 
 
 def outcomes(asked: Settings, jobs, start=TUNED):
     from airhockey import envs
     from airhockey.envs.disturbances import load_disturbances
-    from airhockey.learning.pgpe.records import Manifest
+    from airhockey.learning.pgpe.records import PgpeManifest
     from airhockey.learning.pgpe.trainable import plain
 
     profile = load_disturbances(asked.disturbances)
-    manifest = Manifest(settings=asked, parameters=plain(start), profile=profile, versions=envs.versions(), created="")
+    manifest = PgpeManifest(
+        options=asked, parameters=plain(start), profile=profile, versions=envs.versions(), created=""
+    )
     play = Rollouts(manifest)
     return [play(job) for job in jobs]
 

@@ -11,7 +11,7 @@ from airhockey.envs.kernel.kinematics import forward_kinematics
 from airhockey.envs.scene import robot_model
 from airhockey.envs.specs import PLANAR
 from airhockey.evaluator import Options, begin, evaluate
-from airhockey.evaluator.trajectories import read_episodes, write
+from airhockey.evaluator.runs.trajectories import read_episodes, write
 from airhockey.reporting import episodes as module
 from airhockey.reporting.episodes import read_task
 
@@ -81,7 +81,7 @@ def test_nothing_is_read_of_what_was_not_played(results: Results) -> None:
 
 def test_the_hit_that_scores_is_found_with_its_speed(tmp_path: Path) -> None:
     """An episode that an agent of ours wins: the puck leaves its mallet with the speed that it has a step later."""
-    run = begin(Options(environments=("3dof-hit",), agent="baseline", episodes=2, seed=1), tmp_path / "run")
+    run = begin(Options(environments=("3dof-hit",), agent="planner", episodes=2, seed=1), tmp_path / "run")
     evaluate(run)
     path = tmp_path / "run" / "trajectories.h5"
     data = read_task([path], "3dof-hit")

@@ -12,12 +12,13 @@ from results import ENV, Results
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.records import EpisodeRecord, Manifest, Options
+from airhockey.evaluator.runs.manifest import Manifest
+from airhockey.evaluator.runs.reader import Run
+from airhockey.evaluator.runs.records import EpisodeRecord, Options
 from airhockey.reporting import write_site
 from airhockey.reporting.entries import boards
 from airhockey.reporting.results import Task
 from airhockey.reporting.site import MARK, slug
-from airhockey.reporting.sources import Run
 
 HIT, DEFEND, PREPARE = "7dof-hit", "7dof-defend", "7dof-prepare"
 
@@ -62,7 +63,7 @@ def test_a_better_class_comes_first_then_success_then_fewer_points() -> None:
     ]
     (board,) = boards(tasks)
     assert [name for name, _ in board.ranked(HIT)] == ["c", "a", "b", "perfect but dangerous"]
-    assert [t.deployability for _, t in board.ranked(HIT)] == ["Deployable"] * 3 + ["Non-deployable"]
+    assert [t.verdict.official_class for _, t in board.ranked(HIT)] == ["Deployable"] * 3 + ["Non-deployable"]
 
 
 def test_the_largest_run_up_to_1000_episodes_counts_and_of_those_the_latest() -> None:
@@ -173,10 +174,10 @@ def test_a_site_is_not_written_over_something_else(results: Results, tmp_path: P
 
 
 def test_names_become_safe_and_stay_different() -> None:
-    names = ["baseline", "a/b", "a_b", "<b>", "..", "../x", "", "ä", "a" * 300, "a" * 301, "con space"]
+    names = ["planner", "a/b", "a_b", "<b>", "..", "../x", "", "ä", "a" * 300, "a" * 301, "con space"]
     slugs = [slug(name) for name in names]
     assert len(set(slugs)) == len(names)
-    assert slugs[0] == "baseline"
+    assert slugs[0] == "planner"
     assert all(re.fullmatch(r"[A-Za-z0-9_.-]{1,100}", one) and not one.startswith(".") for one in slugs)
 
 

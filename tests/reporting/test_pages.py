@@ -11,19 +11,19 @@ import numpy as np
 import pytest
 from results import ENV, EPISODES, Results
 
-from airhockey.evaluator.games.film import write_film
-from airhockey.evaluator.games.records import Event, GameJob, GameRecord, PlayerResult
-from airhockey.evaluator.games.tournament import read_standings
-from airhockey.evaluator.judging import wilson_interval
-from airhockey.evaluator.records import Episode, EpisodeRecord, StepTime
-from airhockey.evaluator.report import report as evaluators_report
-from airhockey.evaluator.store import read_journal
-from airhockey.evaluator.trajectories import read_episodes, write
+from airhockey.evaluator.analysis.game import analyse_game
+from airhockey.evaluator.evaluation import report as evaluators_report
+from airhockey.evaluator.judging.tasks import wilson_interval
+from airhockey.evaluator.runs.game_records import Event, GameJob, GameRecord, PlayerResult
+from airhockey.evaluator.runs.game_trajectories import write_film
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.evaluator.runs.reader import Run, open_source
+from airhockey.evaluator.runs.records import Episode, EpisodeRecord, StepTime
+from airhockey.evaluator.runs.trajectories import read_episodes, write
+from airhockey.evaluator.tournament import read_standings
 from airhockey.reporting import report
-from airhockey.reporting.films import read_game
 from airhockey.reporting.results import Task
 from airhockey.reporting.sections.comparison import compare, same_seeds, sentence
-from airhockey.reporting.sources import Run, open_source
 
 
 class Tree(HTMLParser):
@@ -97,18 +97,21 @@ def test_a_name_or_an_error_of_others_stays_text(results: Results) -> None:
 def test_the_summary_says_what_the_evaluator_says(results: Results) -> None:
     expected: Any = evaluators_report(results.swings)
     task = task_of(results.swings)
-    assert (task.success, task.penalty) == (expected.success, expected.penalty)
+    assert (task.verdict.success, task.verdict.penalty) == (expected.success, expected.penalty)
     assert task.violations.items() >= expected.violations.items()
-    assert task.failures == expected.agent_errors == EPISODES // 4
+    assert task.verdict.failures == expected.agent_errors == EPISODES // 4
     said = words_of(report([results.swings])[0])
-    low, high = wilson_interval(task.successes, EPISODES)
+    low, high = wilson_interval(task.verdict.successes, EPISODES)
     for text in (f"{expected.success:.1%}", f"{low:.1%} – {high:.1%}", f"{expected.penalty:g}", "numba", "seed 3"):
         assert text in said
 
 
 def test_runs_with_the_same_seeds_are_compared_in_pairs(results: Results) -> None:
     comparison = compare(task_of(results.holds), task_of(results.swings))
-    one, other = ({r.index: r.success for r in read_journal(folder)} for folder in (results.holds, results.swings))
+    one, other = (
+        {r.index: r.success for r in read_journal(folder, EpisodeRecord).records}
+        for folder in (results.holds, results.swings)
+    )
     pairs = [(one[k], other[k]) for k in one]
     expected = tuple(pairs.count(both) for both in ((True, True), (True, False), (False, True), (False, False)))
     assert comparison.pairs == expected
@@ -217,7 +220,7 @@ def test_goals_of_the_film_are_those_of_the_referee(tmp_path: Path) -> None:
         events=(*events, goal),
     )
     write_film(tmp_path / "film.h5", rows[:over], b"{}")
-    data = read_game(tmp_path / "film.h5", record)
+    data = analyse_game(tmp_path / "film.h5", record)
     assert [(shot.side, shot.outcome) for shot in data.shots] == [("home", "goal")]
     assert data.shots[0].speed == pytest.approx(3.0)
     assert data.touches == (1, 0)

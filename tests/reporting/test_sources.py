@@ -12,10 +12,10 @@ from results import ENV, EPISODES, Results
 
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options
-from airhockey.evaluator.run import begin
-from airhockey.evaluator.trajectories import read_episodes, write
+from airhockey.evaluator.evaluation import begin
+from airhockey.evaluator.runs.reader import Match, Nothing, Run, Tournament, open_source, short_name
+from airhockey.evaluator.runs.trajectories import read_episodes, write
 from airhockey.reporting import report
-from airhockey.reporting.sources import Match, Nothing, Run, Tournament, open_source, short_name
 
 Copy = Callable[..., Path]
 
@@ -158,7 +158,7 @@ def test_what_holds_something_is_shown_beside_what_does_not(results: Results, tm
 
 
 def test_names_come_without_other_peoples_paths() -> None:
-    assert short_name("baseline") == "baseline"
+    assert short_name("planner") == "planner"
     assert short_name("/home/somebody/agents/mine") == "mine"
     assert short_name("/home/somebody/mine/air_hockey_agent") == "mine"
     assert short_name("/home/somebody/mine-0.1.0.zip") == "mine-0.1.0"

@@ -11,8 +11,8 @@ from submission_examples import EXAMPLES
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator import Options
-from airhockey.evaluator.player import Player
-from airhockey.evaluator.records import Episode, Job
+from airhockey.evaluator.play.episode import EpisodePlayer
+from airhockey.evaluator.runs.records import Episode, Job
 
 pytestmark = pytest.mark.skipif(
     importlib.util.find_spec("mushroom_rl") is None, reason="the compatibility layer needs the extra mushroom"
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.skipif(
 
 def first_episodes(agent: Path, env: str, mode: str) -> list[Episode]:
     options = Options(environments=(env,), agent=str(agent), episodes=2, seed=7, disturbances="server", isolate=mode)
-    player = Player(options, load_disturbances("server"))
+    player = EpisodePlayer(options, load_disturbances("server"))
     try:
         return [player(Job(env, index)) for index in range(2)]
     finally:
@@ -54,7 +54,7 @@ def test_the_iiwa_agent_with_saved_parameters_plays_the_same_in_every_mode(sandb
 def test_the_package_is_there_only_for_submissions() -> None:
     code = """
 import importlib.util
-import airhockey.agents, airhockey.evaluator.player
+import airhockey.agents, airhockey.evaluator.play.episode
 assert importlib.util.find_spec("air_hockey_challenge") is None
 from airhockey import compat
 assert importlib.util.find_spec("air_hockey_challenge") is None

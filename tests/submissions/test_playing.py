@@ -11,24 +11,24 @@ import numpy as np
 import pytest
 
 from airhockey import envs
-from airhockey.agents import build_agent as build_here
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options
-from airhockey.evaluator.games.player import Game, GamePlayer
-from airhockey.evaluator.games.records import GameJob, GameOptions
 from airhockey.evaluator.isolation import modes
 from airhockey.evaluator.isolation.build import build_agent
 from airhockey.evaluator.isolation.failures import AgentDied, AgentTimeout
+from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.serving import listen, serve
-from airhockey.evaluator.player import Player
-from airhockey.evaluator.records import Episode, Job
+from airhockey.evaluator.play.episode import EpisodePlayer
+from airhockey.evaluator.play.game import Game, GamePlayer
+from airhockey.evaluator.runs.game_records import GameJob, GameOptions
+from airhockey.evaluator.runs.records import Episode, Job
 
 ENV = "3dof-defend"
 
 
 def episodes(count: int = 2, **given: Any) -> list[Episode]:
-    player = Player(Options(environments=(ENV,), seed=3, **given), load_disturbances("ideal"))
+    player = EpisodePlayer(Options(environments=(ENV,), seed=3, **given), load_disturbances("ideal"))
     try:
         return [player(Job(ENV, index)) for index in range(count)]
     finally:
@@ -103,7 +103,7 @@ def test_the_default_mode(submission: Callable[..., str], monkeypatch: pytest.Mo
 def served() -> Iterator[str]:
     """The thesis agent behind a port."""
     env = envs.make("7dof-hit")
-    agent = build_here("thesis", env.env_info)
+    agent = build_agent("thesis", env)
     with listen("127.0.0.1", 0) as waiting:
         thread = threading.Thread(target=serve, args=(waiting, agent, 23, 1), daemon=True)
         thread.start()
@@ -114,14 +114,14 @@ def served() -> Iterator[str]:
 def test_a_remote_agent_plays_as_at_home(served: str) -> None:
     env = envs.make("7dof-hit")
     actions = []
-    for agent in (build_here("thesis", env.env_info), build_agent(served, env)):
+    for agent in (build_agent("thesis", env), build_agent(served, env)):
         agent.episode_start()
         observation = env.reset(seed=0)
         drawn = []
         for _ in range(40):
             for preprocessor in agent.preprocessors:
                 observation = preprocessor(observation)
-            drawn.append(agent.draw_action(observation))
+            drawn.append(agent.act(observation))
             observation, *_ = env.step(drawn[-1])
         agent.stop()
         actions.append(drawn)
@@ -155,16 +155,16 @@ def test_a_remote_agent_that_breaks_the_protocol_fails(answer: bytes | None, err
                     time.sleep(0.1)
 
         threading.Thread(target=misbehave, daemon=True).start()
-        agent = build_agent(f"tcp://127.0.0.1:{server.getsockname()[1]}", env, patience=0.3)
+        agent = build_agent(f"tcp://127.0.0.1:{server.getsockname()[1]}", env, limits=Limits(patience=0.3))
         with pytest.raises(error, match=text):
             two_steps(agent, env.reset(seed=0))
 
 
 def two_steps(agent: Any, observation: Any) -> None:
     agent.episode_start()
-    agent.draw_action(observation)
+    agent.act(observation)
     time.sleep(0.05)
-    agent.draw_action(observation)
+    agent.act(observation)
 
 
 @pytest.mark.parametrize("address", ["tcp://", "tcp://host", "tcp://host:x", "tcp://host:99999", "tcp://:80"])

@@ -14,9 +14,9 @@ import pytest
 
 from airhockey import envs
 from airhockey.errors import ActionError, AirHockeyError, SimulationError
+from airhockey.evaluator.isolation.agent_client import IsolatedAgent
 from airhockey.evaluator.isolation.build import build_agent
 from airhockey.evaluator.isolation.failures import AgentDied, AgentError, AgentRaised, AgentTimeout
-from airhockey.evaluator.isolation.host import IsolatedAgent
 from airhockey.evaluator.isolation.limits import MIB, Limits
 
 MODES = ("process", "sandbox")
@@ -32,7 +32,7 @@ def play(agent: IsolatedAgent, env: Any, steps: int = 6) -> np.ndarray:
     agent.episode_start()
     observation = env.reset(seed=0)
     for _ in range(steps):
-        observation, *_ = env.step(agent.draw_action(observation))
+        observation, *_ = env.step(agent.act(observation))
     return observation
 
 
@@ -70,7 +70,7 @@ def gone(agent: IsolatedAgent) -> bool:
     ("kind", "text", "where"),
     [
         (AgentRaised, "ZeroDivisionError", {"importing": "1 / 0"}),
-        (AgentRaised, "pip install nowhere_to_be_found", {"importing": "import nowhere_to_be_found"}),
+        (AgentRaised, "neither a file of the submission nor a package", {"importing": "import nowhere_to_be_found"}),
         (AgentRaised, "SystemExit", {"building": "sys.exit(3)"}),
         (AgentDied, "exit status 7.*last words: farewell", {"building": "print('farewell'); os._exit(7)"}),
     ],
@@ -298,7 +298,7 @@ while True:
 
 
 def own_processes() -> list[str]:
-    """Processes that run a guest."""
+    """Processes that run an agent."""
     found = []
     for entry in Path("/proc").iterdir():
         if entry.name.isdigit():
@@ -306,7 +306,7 @@ def own_processes() -> list[str]:
                 command = (entry / "cmdline").read_bytes()
             except OSError:
                 continue
-            if b"airhockey.evaluator.isolation.guest" in command:
+            if b"airhockey.evaluator.isolation.agent_process" in command:
                 found.append(entry.name)
     return found
 

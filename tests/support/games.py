@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from airhockey import envs
 from airhockey.agents.hold import HoldAgent
 from airhockey.envs.disturbances import load_disturbances
-from airhockey.evaluator.games import play
-from airhockey.evaluator.games.film import read_film
-from airhockey.evaluator.games.play import GamePlay
-from airhockey.evaluator.games.player import Game, GamePlayer
-from airhockey.evaluator.games.records import Event, GameJob, GameOptions, GameRecord, PlayerResult
-from airhockey.evaluator.records import StepTime
+from airhockey.evaluator.isolation import handle
+from airhockey.evaluator.isolation.handle import LocalAgent
+from airhockey.evaluator.play.game import TIME_LIMIT, Game, GamePlay, GamePlayer, failed_in_game
+from airhockey.evaluator.play.seat import Care, Seat
+from airhockey.evaluator.runs.game_records import SIDES, Event, GameJob, GameOptions, GameRecord, PlayerResult
+from airhockey.evaluator.runs.game_trajectories import read_film
+from airhockey.evaluator.runs.records import StepTime
 
 Array = NDArray[np.float64]
 JOB = GameJob("0", "h", "a", "h", "a", seed=1)
@@ -59,10 +60,18 @@ def new_game(
 ) -> GamePlay:
     """A game of two players that stand still, not begun."""
     if monkeypatch is not None and clock is not None:
-        monkeypatch.setitem(play.CLOCKS, "cpu", clock)
+        monkeypatch.setitem(handle.CLOCKS, "cpu", clock)
     env = envs.make("tournament", orders)
-    agents = Stander(env, 0, orders[0]), Stander(env, 1, orders[1])
-    return GamePlay(JOB, GameOptions(**options), env, agents)
+    return seated(GameOptions(**options), env, Stander(env, 0, orders[0]), Stander(env, 1, orders[1]))
+
+
+def seated(options: GameOptions, env: Any, *agents: Any) -> GamePlay:
+    """A game of these agents, not begun."""
+    care = Care(options.clock, TIME_LIMIT, failed_in_game)
+    seats = [
+        Seat(LocalAgent(agent), form, care, side) for agent, form, side in zip(agents, env.formats, SIDES, strict=True)
+    ]
+    return GamePlay(JOB, options, env, tuple(seats))
 
 
 def placed(game: GamePlay, *puck: float) -> Array:
@@ -73,8 +82,9 @@ def placed(game: GamePlay, *puck: float) -> Array:
 def run(game: GamePlay, observation: Array, steps: int, first: int = 1) -> int:
     """Play until something happens, at most so many steps; gives the step at which it did, or the last one."""
     before = len(game.events)
+    game.rollout.observation = observation
     for step in range(first, first + steps):
-        observation = game.step(observation, step)
+        game.step()
         if len(game.events) > before:
             return step
     return first + steps - 1

@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from airhockey.evaluator.records import Episode
-from airhockey.evaluator.trajectories import read_episodes
+from airhockey.evaluator.runs.records import Episode
+from airhockey.evaluator.runs.trajectories import read_episodes
 
 ENV = "3dof-defend"  # its episodes are short
 

@@ -4,10 +4,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from airhockey.evaluator import Options, begin, evaluate
-from airhockey.evaluator.games.match import MatchOptions, begin_match, play_match
-from airhockey.evaluator.games.records import GameOptions
-from airhockey.evaluator.games.schedule import Entry, TournamentOptions
-from airhockey.evaluator.games.tournament import begin_tournament, play_tournament
+from airhockey.evaluator.entries import Entry
+from airhockey.evaluator.match import MatchOptions, begin_match, play_match
+from airhockey.evaluator.runs.game_records import GameOptions
+from airhockey.evaluator.schedule import TournamentOptions
+from airhockey.evaluator.tournament import begin_tournament, play_tournament
 from submissions import make_submission
 
 ENV = "3dof-defend"

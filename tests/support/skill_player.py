@@ -3,12 +3,12 @@
 import numpy as np
 
 from airhockey import envs
-from airhockey.agents.baseline.skill import Situation
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.kalman import PuckFilter
 from airhockey.agents.estimation.prediction import PuckPredictor
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, to_table
 
 

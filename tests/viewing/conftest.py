@@ -4,13 +4,14 @@ from pathlib import Path
 
 import pytest
 from games import play_one
+from tools import needs_rendering
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator import Options, begin, evaluate
-from airhockey.evaluator.games.folder import GameFolder
-from airhockey.evaluator.games.match import MATCH, MatchManifest, MatchOptions
-from airhockey.evaluator.games.records import GameOptions
+from airhockey.evaluator.match import MatchFolder, MatchOptions
 from airhockey.evaluator.official import write_official
+from airhockey.evaluator.runs.game_records import GameOptions
+from airhockey.evaluator.runs.manifest import Manifest
 
 GAME_STEPS = 60
 
@@ -29,12 +30,18 @@ def match_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A game of a little over a second."""
     path = tmp_path_factory.mktemp("results") / "match"
     rules = GameOptions(steps=GAME_STEPS)
-    manifest = MatchManifest(
+    manifest = Manifest(
         options=MatchOptions(home="h", away="a", game=rules),
         profile=load_disturbances("ideal"),
         versions={},
         created="",
     )
-    with GameFolder.create(path, MATCH, manifest) as folder:
+    with MatchFolder.create(path, manifest) as folder:
         folder.add(play_one("hold", "hold", GAME_STEPS))
     return path
+
+
+@pytest.fixture
+def rendering() -> None:
+    """Skips where nothing can be rendered."""
+    needs_rendering()

@@ -1,8 +1,6 @@
 """The viewer in a real browser, served by the command on this machine alone."""
 
 import io
-import os
-import shutil
 import signal
 import socket
 import subprocess
@@ -16,8 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
+from tools import chromium
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 QUIET = (
     "--no-sandbox",
     "--disable-background-networking",
@@ -66,14 +64,13 @@ def test_it_listens_on_this_machine_alone(served: Served) -> None:
         socket.create_connection(("127.0.0.2", served.port), timeout=5)
 
 
-@pytest.mark.skipif(CHROMIUM is None and "CI" not in os.environ, reason="no Chromium here: apt-get install chromium")
 def test_the_page_shows_a_puck_that_moves(served: Served) -> None:
     from playwright.sync_api import sync_playwright
 
-    assert CHROMIUM is not None, "CI has to have Chromium: apt-get install chromium"
+    path = chromium()
     errors: list[str] = []
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(QUIET))
+        browser = playwright.chromium.launch(executable_path=path, args=list(QUIET))
         page = browser.new_page(viewport={"width": 520, "height": 440})
         page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
         page.on("pageerror", lambda error: errors.append(str(error)))

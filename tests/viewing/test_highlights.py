@@ -3,12 +3,10 @@
 import numpy as np
 from games import JOB, side
 
-from airhockey.envs.specs import TABLE
-from airhockey.evaluator.games.records import Event, GameRecord
+from airhockey.evaluator.runs.game_records import Event, GameRecord
 from airhockey.viewing.games import WIDTH, game_recording
 from airhockey.viewing.highlights import frame_steps, highlight_spans
 from airhockey.viewing.recording import Moment
-from airhockey.viewing.saves import saves
 
 
 def moments(*steps: int, what: str = "goal") -> list[Moment]:
@@ -37,30 +35,6 @@ def test_every_frame_shows_its_own_time() -> None:
     steps = frame_steps([(0, 50), (200, 210)], fps=25, speed=1.0)
     assert steps == [*range(2, 51, 2), *range(202, 211, 2)]
     assert frame_steps([(0, 50)], fps=25, speed=5.0) == [10, 20, 30, 40, 50]
-
-
-def flight(y_speed: float, touched: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A puck that slides towards the left goal at 2 m/s and turns back at x = -0.7, with a mallet there or not."""
-    steps = 60
-    x = np.abs(np.linspace(0.2, -2.2, steps) + 0.7) - 0.7
-    velocity = np.stack([np.where(np.arange(steps) < np.argmin(x), -2.0, 2.0), np.full(steps, y_speed)], axis=1)
-    puck = np.stack([x, np.linspace(0, y_speed * steps * 0.02, steps)], axis=1)
-    mallets = np.tile([[-0.76 if touched else -0.3, 0.0], [0.8, 0.0]], (steps, 1, 1))
-    return puck, velocity, mallets
-
-
-def test_a_shot_that_a_mallet_turns_back_is_a_save() -> None:
-    puck, velocity, mallets = flight(0.0, touched=True)
-    turn = int(np.argmin(puck[:, 0]))
-    assert saves(puck, velocity, mallets) == [(turn + 1, 0, 2.0)]
-
-
-def test_what_no_mallet_touched_or_went_in_or_wide_is_no_save() -> None:
-    assert saves(*flight(0.0, touched=False)) == []
-    puck, velocity, mallets = flight(0.0, touched=True)
-    assert saves(puck, velocity, mallets, goals=[int(np.argmin(puck[:, 0])) + 5]) == []
-    wide = 3 * TABLE.goal_width  # at 2 m/s over half a table, far beside the goal
-    assert saves(*flight(wide, touched=True)) == []
 
 
 def test_captions_count_what_the_referee_noted() -> None:

@@ -10,8 +10,8 @@ import pytest
 from command_line import Hockey
 
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator import trajectories
-from airhockey.evaluator.games.film import read_film
+from airhockey.evaluator.runs import trajectories
+from airhockey.evaluator.runs.game_trajectories import read_film
 from airhockey.viewing.library import Library, open_library
 from airhockey.viewing.library_official import in_world
 from airhockey.viewing.recording import Recording

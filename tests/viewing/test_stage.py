@@ -8,15 +8,16 @@ import pytest
 from arms import swinging
 
 from airhockey import envs
-from airhockey.evaluator import Options, trajectories
-from airhockey.evaluator.games.film import read_film
-from airhockey.evaluator.games.records import GameOptions
+from airhockey.evaluator import Options
+from airhockey.evaluator.runs import trajectories
+from airhockey.evaluator.runs.game_records import GameOptions
+from airhockey.evaluator.runs.game_trajectories import read_film
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.live import LiveGame, LiveTask, mallet_target
 from airhockey.viewing.marks import Mark
-from airhockey.viewing.show import RecordedShow, predicted_path
-from airhockey.viewing.stage import Stage
-from airhockey.viewing.transport import PAUSE_AT_END, Transport
+from airhockey.viewing.playback import RecordedShow, predicted_path
+from airhockey.viewing.playback_controls import PAUSE_AT_END, Transport
+from airhockey.viewing.scene_view import Stage
 
 
 @pytest.mark.parametrize("name", ["3dof-hit", "7dof-prepare", "tournament"])
@@ -78,7 +79,7 @@ def test_an_agent_that_fails_ends_its_episode_not_the_show(submission: Callable[
 def test_a_live_game_is_the_matchs_game() -> None:
     from games import play_one
 
-    from airhockey.evaluator.seeding import game_seed
+    from airhockey.evaluator.play.seeding import game_seed
 
     film = play_one("hold", "hold", 20, game_seed(3, "0")).film
     show = LiveGame("hold", "hold", GameOptions(steps=20), seed=3)
@@ -102,13 +103,13 @@ def test_the_path_of_the_puck_begins_at_it_and_stays_on_the_table() -> None:
 @pytest.mark.parametrize("shape", [(7,), (2, 7), (3, 7), (20, 3, 7)])
 def test_a_target_is_drawn_whatever_the_order_of_actions(shape: tuple[int, ...]) -> None:
     stage = Stage("tournament")
-    marks = mallet_target(stage, 0, object(), np.broadcast_to(np.array(stage.robot.start), shape))
+    marks = mallet_target(stage, 0, None, np.broadcast_to(np.array(stage.robot.start), shape))
     assert np.abs(marks[0].start[:2]).max() < 1.5
 
     class Planner:
         target = (-0.5, 0.25)
 
-    marks = mallet_target(stage, 1, Planner(), np.zeros(shape))
+    marks = mallet_target(stage, 1, Planner.target, np.zeros(shape))
     assert marks[0].start[:2] == (0.5, -0.25), "player 2 looks from the other side"
 
 

@@ -10,9 +10,10 @@ from command_line import Hockey
 from PIL import Image
 
 from airhockey.errors import MissingDependencyError
-from airhockey.evaluator.store import read_journal
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.evaluator.runs.records import EpisodeRecord
 from airhockey.viewing import offscreen
-from airhockey.viewing.filming import open_film
+from airhockey.viewing.video_writer import open_film
 
 SMALL = "--size 160x96 --quality fast --quiet"
 STEP = 0.02
@@ -23,10 +24,11 @@ def frames(path: Path) -> list[np.ndarray]:
         return [frame.to_ndarray(format="rgb24").astype(int) for frame in film.decode(video=0)]
 
 
+@pytest.mark.usefixtures("rendering")
 def test_a_film_of_episodes_is_as_long_as_they_were_and_moves(hockey: Hockey, run_folder: Path) -> None:
     status, out, err = hockey(f"video {run_folder} -o f.mp4 --episodes 2,0 {SMALL}")
     assert status == 0, err
-    steps = {record.index: record.steps for record in read_journal(run_folder)}
+    steps = {record.index: record.steps for record in read_journal(run_folder, EpisodeRecord).records}
     seen = frames(Path("f.mp4"))
     assert len(seen) == round(steps[2] * STEP * 25) + round(steps[0] * STEP * 25)
     assert seen[0].shape == (96, 160, 3)
@@ -36,6 +38,7 @@ def test_a_film_of_episodes_is_as_long_as_they_were_and_moves(hockey: Hockey, ru
     assert f"{len(seen)} frames" in out
 
 
+@pytest.mark.usefixtures("rendering")
 @pytest.mark.parametrize(("options", "fps", "speed"), [("--fps 50", 50, 1), ("--speed 3", 25, 3)])
 def test_a_film_of_a_game_has_the_games_length(
     hockey: Hockey, match_folder: Path, options: str, fps: int, speed: int
@@ -45,6 +48,7 @@ def test_a_film_of_a_game_has_the_games_length(
     assert len(seen) == 60 * STEP * fps / speed
 
 
+@pytest.mark.usefixtures("rendering")
 def test_a_gif_keeps_time(hockey: Hockey, match_folder: Path) -> None:
     assert hockey(f"video {match_folder} -o game.gif --fps 30 {SMALL} --no-inset")[0] == 0
     with Image.open("game.gif") as film:
@@ -56,18 +60,21 @@ def test_a_gif_keeps_time(hockey: Hockey, match_folder: Path) -> None:
     assert sum(durations) == pytest.approx(60 * STEP * 1000, abs=10)
 
 
+@pytest.mark.usefixtures("rendering")
 def test_highlights_of_episodes_are_what_led_to_a_success(hockey: Hockey, run_folder: Path) -> None:
-    assert [record.success for record in read_journal(run_folder)] == [False, False, True]
+    assert [record.success for record in read_journal(run_folder, EpisodeRecord).records] == [False, False, True]
     assert hockey(f"video {run_folder} -o f.mp4 --highlights {SMALL}")[0] == 0
     assert len(frames(Path("f.mp4"))) == 2 * 25, "the two seconds before the puck was stopped"
     assert hockey(f"video {run_folder} -o g.mp4 --highlights --episodes 0 {SMALL}")[0] == 2
 
 
+@pytest.mark.usefixtures("rendering")
 def test_the_beginning_of_every_episode(hockey: Hockey, run_folder: Path) -> None:
     assert hockey(f"video {run_folder} -o f.mp4 --seconds 0.4 {SMALL}")[0] == 0
     assert len(frames(Path("f.mp4"))) == 3 * 10
 
 
+@pytest.mark.usefixtures("rendering")
 def test_a_still_is_the_moment_asked_for(hockey: Hockey, match_folder: Path) -> None:
     assert hockey(f"video {match_folder} -o a.png --at 0.5 {SMALL}")[0] == 0
     assert hockey(f"video {match_folder} -o b.png --at 0.54 {SMALL}")[0] == 0
@@ -79,6 +86,7 @@ def test_a_still_is_the_moment_asked_for(hockey: Hockey, match_folder: Path) -> 
     assert hockey(f"video {match_folder} -o a.mp4 --at 1 {SMALL}")[0] == 2
 
 
+@pytest.mark.usefixtures("rendering")
 def test_a_gif_that_nobody_could_load_is_refused(hockey: Hockey, run_folder: Path) -> None:
     status, _, err = hockey(f"video {run_folder} -o f.gif --speed 0.02 --fps 50 {SMALL}")
     assert status == 2 and "GIF of more than" in err
@@ -107,7 +115,6 @@ def test_a_film_that_fails_is_not_there(tmp_path: Path) -> None:
         ("{run} -o f.mp4 --size 161x96", "even"),
         ("{run} -o f.mp4 --size 9x9", "960x540"),
         ("{run} -o f.mp4 --episodes 0,7", "there are 0, 1, 2"),
-        ("{match} -o f.mp4 --highlights --size 64x48 --quiet", "highlights"),
         ("nothing-here -o f.mp4", "nothing-here"),
     ],
 )
@@ -120,6 +127,14 @@ def test_what_cannot_be_filmed_is_said_in_one_line(
     assert not list(Path().iterdir())
 
 
+@pytest.mark.usefixtures("rendering")
+def test_a_game_without_highlights_is_said_to_have_none(hockey: Hockey, match_folder: Path) -> None:
+    status, _, err = hockey(f"video {match_folder} -o f.mp4 --highlights --size 64x48 --quiet")
+    assert status == 2
+    assert "highlights" in err and len(err.splitlines()) == 1
+    assert not list(Path().iterdir())
+
+
 def test_without_the_extra_the_command_that_installs_it_is_named(
     hockey: Hockey, run_folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -129,10 +144,27 @@ def test_without_the_extra_the_command_that_installs_it_is_named(
     assert "pip install 'airhockey[video]'" in err
 
 
-def test_a_machine_that_cannot_render_is_told_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    "failure", ["raise AttributeError('no glGetError')", "raise OSError('libEGL.so.1')", "exit(3)"]
+)
+def test_a_machine_that_cannot_render_is_told_what_to_install(monkeypatch: pytest.MonkeyPatch, failure: str) -> None:
+    """Whatever ends a backend's trial, and wherever: as its library is loaded, or later."""
     monkeypatch.delenv("MUJOCO_GL", raising=False)
-    monkeypatch.setattr(offscreen, "_PROBE", "import mujoco.no_such_backend")
+    monkeypatch.setattr(offscreen, "_TRIAL", failure)
     with pytest.raises(MissingDependencyError, match="libegl1 libgl1 libosmesa6") as error:
         offscreen.choose_backend()
-    assert "egl: ModuleNotFoundError" in str(error.value)
-    assert "osmesa: ModuleNotFoundError" in str(error.value)
+    expected = "ended with status 3" if "exit" in failure else failure[6:].replace("('", ": ").rstrip("')")
+    assert f"egl: {expected}; osmesa: {expected}" in str(error.value)
+
+
+@pytest.mark.parametrize("backend", ["egl", "osmesa"])
+def test_a_backend_without_its_library_is_not_there(
+    backend: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """PyOpenGL then fails in ways of its own: with an AttributeError while it is imported."""
+    package = tmp_path / "OpenGL"
+    package.mkdir()
+    (package / "__init__.py").write_text("None.glGetError")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    why = offscreen.why_not(backend)
+    assert why is not None and "AttributeError" in why

@@ -14,7 +14,7 @@ from airhockey.agents.control.aqp import AnchoredQp
 from airhockey.agents.control.kinematics import ArmKinematics
 from airhockey.agents.control.parameters import ControlParameters, control_parameters
 from airhockey.agents.control.qp import DEFAULT, make_solver
-from airhockey.agents.control.tip_step import (
+from airhockey.agents.control.tip_velocity_control import (
     Demand,
     advance,
     demand,
@@ -34,7 +34,7 @@ class JointState:
     """A joint command, and where it puts the rod tip.
 
     Attributes:
-        values: All of it, as `tip_step` takes and gives it. Shape (2 n + 4,).
+        values: All of it, as `tip_velocity_control.advance` takes and gives it. Shape (2 n + 4,).
     """
 
     values: Array

@@ -2,7 +2,7 @@
 
     minimise ½ xᵀHx + gᵀx   subject to   lower ≤ Ax ≤ upper
 
-An equality is a row whose bounds coincide. The package's own (`dual_qp`: active set, exact) can be called from compiled code
+An equality is a row whose bounds coincide. The package's own (`active_set`, exact) can be called from compiled code
 and is the default; DAQP is another exact active-set method, OSQP one of first order.
 """
 
@@ -11,7 +11,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.control.dual_qp import SAME, minimise
+from airhockey.agents.control.active_set import SAME, minimise
 from airhockey.errors import MissingDependencyError, unknown
 
 Array = NDArray[np.float64]

@@ -1,13 +1,15 @@
 """One function that builds an agent as asked: in this process, in one of its own, in a sandbox, or behind a TCP port."""
 
-from collections.abc import Mapping
-from dataclasses import replace
+import copy
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from airhockey.agents.submission import is_submission, submission_folder
+from airhockey.agents.packaging.checkout import find_checkout
+from airhockey.agents.submission import is_submission
+from airhockey.errors import ConfigurationError
+from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.modes import REMOTE, Mode
 
@@ -19,49 +21,43 @@ def build_agent(
     *,
     mode: Mode = "none",
     limits: Limits | None = None,
-    patience: float | None = None,
-    order: int | None = 3,
     seed: np.random.SeedSequence | None = None,
-    env_info: Mapping[str, Any] | None = None,
+    python: str | None = None,
     **kwargs: Any,
-) -> Any:
-    """Build an agent.
+) -> AgentHandle:
+    """Build an agent for one robot of an environment, whose interpolation order there is the order of its actions.
 
     Args:
         agent: A name of the registry, the path of a submission, or tcp://HOST:PORT.
-        env: The environment that it is to play.
+        env: The environment that it is to play; one in this process is given a copy of its `env_info`.
         agent_id: 1 or 2.
         mode: Where it lives.
-        limits: What it may use there.
-        patience: The longest time for an answer, in [s]; wins over that of `limits`.
-        order: The interpolation order of its actions in this environment.
+        limits: What it may use there, and how long anybody waits.
         seed: Seeds the generators of a process of its own; in this process the caller does it.
-        env_info: What an agent in this process is given; default: the environment's own.
+        python: Another interpreter for a submission's process.
         kwargs: Handed to the agent.
-
-    Returns:
-        Something with `episode_start`, `draw_action`, `stop`, `interpolation_order` and `preprocessors`.
 
     Raises:
         AgentError: It could not be built where it was to live.
         Exception: In this process: whatever its code raises.
     """
     limits = limits or Limits()
-    if patience is not None:
-        limits = replace(limits, patience=patience)
+    order = env.formats[min(agent_id, env.n_players) - 1].order
     if agent.startswith(REMOTE):
         from airhockey.evaluator.isolation.remote import RemoteAgent
 
         return RemoteAgent(agent, env.env_info, order, limits.patience)
+    if python is not None:
+        return _build_foreign(agent, env, agent_id, mode, limits, seed, python, kwargs)
     if mode == "none":
-        from airhockey.evaluator.isolation.workshop import build_with_compatibility
+        from airhockey.evaluator.isolation.build_local import build_local
 
-        return build_with_compatibility(agent, env.env_info if env_info is None else dict(env_info), agent_id, **kwargs)
-    from airhockey.evaluator.isolation.host import IsolatedAgent
+        return build_local(agent, copy.deepcopy(env.env_info), agent_id, **kwargs)
+    from airhockey.evaluator.isolation.agent_client import IsolatedAgent
     from airhockey.evaluator.isolation.launch import plain, sandboxed
 
-    folder = submission_folder(Path(agent).expanduser()) if is_submission(agent) else None
-    launch = plain(folder) if mode == "process" else sandboxed(folder, limits)
+    checkout = find_checkout(Path(agent).expanduser()) if is_submission(agent) else None
+    launch = plain(checkout) if mode == "process" else sandboxed(checkout, limits)
     job = {
         "agent": launch.submission or agent,
         "env": env.name,
@@ -70,4 +66,31 @@ def build_agent(
         "agent_id": agent_id,
         "kwargs": kwargs,
     }
+    return IsolatedAgent(launch, job, limits, seed)
+
+
+def _build_foreign(
+    agent: str,
+    env: Any,
+    agent_id: int,
+    mode: Mode,
+    limits: Limits,
+    seed: np.random.SeedSequence | None,
+    python: str,
+    kwargs: dict[str, Any],
+) -> AgentHandle:
+    """A submission in an interpreter of its own."""
+    from airhockey.evaluator.isolation.agent_client import IsolatedAgent
+    from airhockey.evaluator.isolation.interpreters import foreign_job, interpreter
+    from airhockey.evaluator.isolation.launch import plain, sandboxed
+
+    if not is_submission(agent) or mode == "none":
+        raise ConfigurationError(
+            f"--python is for submissions in a process of their own; {agent!r} runs with the evaluator "
+            "(--isolate process or sandbox for a submission)"
+        )
+    own, checkout = interpreter(python), find_checkout(Path(agent).expanduser())
+    launch = plain(checkout, own) if mode == "process" else sandboxed(checkout, limits, own)
+    inside = str(checkout.root) if mode == "process" else str(launch.submission)
+    job = foreign_job(checkout, inside, env, agent_id, kwargs) | {"agent": agent}
     return IsolatedAgent(launch, job, limits, seed)

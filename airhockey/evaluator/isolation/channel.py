@@ -1,15 +1,16 @@
 """The memory that evaluator and agent share, and the two pipes by which they wake each other.
 
     offset      what                                      written by
-    0           length of the text, in bytes              whoever speaks
-    8           number of dimensions of the action        guest
-    16          its shape, up to 4 numbers                guest
-    64          the observation                           host
-    4096        the action                                guest
-    65536       text: JSON                                whoever speaks
+    0           length of the text, in bytes              the sender
+    8           number of dimensions of the action        agent
+    16          its shape, up to 4 numbers                agent
+    64          the observation                           evaluator
+    4096        the action                                agent
+    65536       text: JSON                                the sender
 
-A word on a pipe is one byte. The host believes nothing that it reads: it copies, and checks. The memory's size is sealed,
-or a guest that truncated it would kill the host.
+A request on a pipe is one byte, and eight that nobody can foresee; the reply is one byte and the same eight, so that none can
+be written in advance. The evaluator believes nothing that it reads: it copies, and checks. The memory's size is sealed, or an
+agent that truncated it would kill the evaluator.
 """
 
 import fcntl
@@ -28,11 +29,29 @@ Array = NDArray[np.float64]
 BUILD, EPISODE, ACT, STOP = b"B", b"E", b"A", b"S"
 HELLO, DONE, RAISED, BAD_ACTION = b"H", b"K", b"X", b"N"
 
+NONCE = 8
+MESSAGE = 1 + NONCE
+"""Length of a request and of a reply, in bytes."""
 OBSERVATION, ACTION, TEXT, SIZE = 64, 4096, 65536, 131072
 MAX_DIMENSIONS = 4
 MAX_ACTION = (TEXT - ACTION) // 8
 _SEALS = 0x1 | 0x2 | 0x4  # F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW
 _F_ADD_SEALS = 1033
+
+
+class Nonces:
+    """Bytes that nobody can foresee, `NONCE` at a time; drawn from the system's generator for many requests at once."""
+
+    def __init__(self) -> None:
+        self._drawn, self._place = b"", 0
+
+    def next(self) -> bytes:
+        """The next ones."""
+        begin = self._place
+        if begin >= len(self._drawn):
+            self._drawn, begin = os.urandom(512 * NONCE), 0
+        self._place = begin + NONCE
+        return self._drawn[begin : self._place]
 
 
 def new_memory() -> int:
@@ -53,7 +72,7 @@ class Memory:
         self._action = np.frombuffer(self._map, np.float64, MAX_ACTION, ACTION)
 
     def write_observation(self, observation: Array) -> None:
-        """Put an observation where the guest reads it. Shape (d,)."""
+        """Put an observation where the agent reads it. Shape (d,)."""
         self._observation[: observation.size] = observation
 
     def read_observation(self, size: int) -> Array:
@@ -61,7 +80,7 @@ class Memory:
         return self._observation[:size].copy()
 
     def write_action(self, action: Array) -> None:
-        """Put an action where the host reads it. At most 4 dimensions and `MAX_ACTION` entries."""
+        """Put an action where the evaluator reads it. At most 4 dimensions and `MAX_ACTION` entries."""
         self._header[1] = action.ndim
         self._header[2 : 2 + action.ndim] = action.shape
         self._action[: action.size] = action.reshape(-1)

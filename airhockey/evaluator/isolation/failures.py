@@ -1,4 +1,8 @@
-"""What an agent in a process of its own can do wrong. Each is that agent's failure, and nobody else's."""
+"""What an agent can do wrong, and how it is said. Each is that agent's failure, and nobody else's."""
+
+import contextlib
+import signal
+import traceback
 
 from airhockey.errors import AirHockeyError
 
@@ -17,3 +21,25 @@ class AgentDied(AgentError):
 
 class AgentTimeout(AgentError):
     """It did not answer in time, and was stopped."""
+
+
+def agent_failures() -> tuple[type[BaseException], ...]:
+    """What counts as the agent's failure when its code is called.
+
+    A KeyboardInterrupt is the user's, unless this process ignores the user's: then only the agent can have raised it.
+    """
+    ignored = signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    return (Exception, SystemExit, KeyboardInterrupt) if ignored else (Exception, SystemExit)
+
+
+def describe(failure: BaseException) -> str:
+    """One line: the kind of error, what it says, and for an error that is not ours the file and line."""
+    text = " ".join(str(failure).split())[:300]
+    if isinstance(failure, AgentRaised):
+        return text  # described where it was raised
+    place = ""
+    if not isinstance(failure, AirHockeyError):
+        with contextlib.suppress(IndexError):
+            frame = traceback.extract_tb(failure.__traceback__)[-1]
+            place = f" ({frame.filename.rsplit('/', 1)[-1]}:{frame.lineno})"
+    return f"{type(failure).__name__}: {text}{place}" if text else f"{type(failure).__name__}{place}"

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs.actions import ActionFormat
-from airhockey.evaluator.isolation.apart import Apart
 from airhockey.evaluator.isolation.failures import AgentDied, AgentError, AgentTimeout
+from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.isolation.modes import host_and_port
 
 Array = NDArray[np.float64]
@@ -27,7 +27,7 @@ RESET, RESET_DONE, PREPROCESS, ACT = b"R", b"r", b"P", b"A"
 _CONNECT = 10.0  # [s] to connect
 
 
-class RemoteAgent(Apart):
+class RemoteAgent(AgentHandle):
     """The agent at the other end of a connection.
 
     Args:
@@ -41,8 +41,10 @@ class RemoteAgent(Apart):
         AgentError: Nobody answers there.
     """
 
+    phase = "remote"
+
     def __init__(self, address: str, env_info: Mapping[str, Any], order: int | None, patience: float) -> None:
-        self.interpolation_order, self.phase, self.next_action = order, "remote", None
+        self.interpolation_order = order
         self._shape = ActionFormat(order, env_info["robot"]["n_joints"]).shape
         self._address, self._patience = address, patience
         try:
@@ -53,7 +55,7 @@ class RemoteAgent(Apart):
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     @property
-    def preprocessors(self) -> tuple[Any, ...]:
+    def preprocessors(self) -> tuple[Callable[[Array], Array], ...]:
         """The agent's own, which are applied over there."""
         return (self._preprocess,)
 
@@ -62,7 +64,7 @@ class RemoteAgent(Apart):
         if self._exchange(RESET, 1) != RESET_DONE:
             raise self._broken("it did not confirm the start of the episode")
 
-    def draw_action(self, observation: Array) -> Array:
+    def act(self, observation: Array) -> Array:
         """The next command, in the shape of the interpolation order."""
         count = int(np.prod(self._shape))
         return np.frombuffer(self._exchange(ACT + _raw(observation), 8 * count)).reshape(self._shape).copy()

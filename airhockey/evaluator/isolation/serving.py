@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from airhockey.errors import ConfigurationError
+from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.isolation.remote import ACT, PREPROCESS, RESET, RESET_DONE
 
 LOOPBACK = "127.0.0.1"
@@ -20,12 +21,12 @@ def listen(host: str, port: int) -> socket.socket:
         raise ConfigurationError(f"cannot listen on {host}:{port}: {error.strerror or error}") from None
 
 
-def serve(waiting: socket.socket, agent: Any, size: int, games: int | None = None) -> None:
+def serve(waiting: socket.socket, agent: AgentHandle, size: int, games: int | None = None) -> None:
     """Answer one connection after the other.
 
     Args:
         waiting: From `listen`.
-        agent: Has `episode_start`, `draw_action` and perhaps `preprocessors`.
+        agent: Who answers.
         size: Number of entries of an observation.
         games: After how many connections to end; None for never.
     """
@@ -40,7 +41,7 @@ def serve(waiting: socket.socket, agent: Any, size: int, games: int | None = Non
         games = None if games is None else games - 1
 
 
-def answer_all(connection: socket.socket, agent: Any, size: int) -> None:
+def answer_all(connection: socket.socket, agent: AgentHandle, size: int) -> None:
     """Answer requests until the other side hangs up or says something else."""
     answers: dict[bytes, Callable[[], bytes]] = {}
 
@@ -53,12 +54,12 @@ def answer_all(connection: socket.socket, agent: Any, size: int) -> None:
 
     def preprocess() -> bytes:
         seen = observation()
-        for preprocessor in getattr(agent, "preprocessors", ()):
+        for preprocessor in agent.preprocessors:
             seen = preprocessor(seen)
         return np.asarray(seen, dtype=np.float64).tobytes()
 
     def act() -> bytes:
-        return np.asarray(agent.draw_action(observation()), dtype=np.float64).tobytes()
+        return np.asarray(agent.act(observation()), dtype=np.float64).tobytes()
 
     answers = {RESET: reset, PREPROCESS: preprocess, ACT: act}
     while (word := connection.recv(1)) in answers:

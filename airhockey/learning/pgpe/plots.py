@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.errors import ConfigurationError, MissingDependencyError
-from airhockey.learning.pgpe.folder import read_iterations, read_training
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.learning.pgpe.folder import TrainingFolder
 from airhockey.learning.pgpe.records import Iteration, Settings
 from airhockey.learning.pgpe.sweep import SweepPoint
 
@@ -33,7 +34,7 @@ def plot_run(path: Path, out: Path, form: str = "png") -> list[Path]:
         ConfigurationError: There is no run, or none of its iterations is finished.
         MissingDependencyError: There is no matplotlib.
     """
-    settings, iterations = read_training(path).settings, read_iterations(path)
+    settings, iterations = TrainingFolder.read(path).options, read_journal(path, Iteration).records
     if not iterations:
         raise ConfigurationError(
             f"the run in {str(path)!r} has not finished an iteration yet: there is nothing to plot"

@@ -1,10 +1,12 @@
 """What a training run is asked to do and what it leaves behind, as typed records that travel as JSON."""
 
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import msgspec
 
-from airhockey.envs.disturbances import Disturbances
+from airhockey.evaluator.runs.manifest import TrainingManifest
+
+Options = TypeVar("Options")
 
 
 class Settings(msgspec.Struct, frozen=True, kw_only=True):
@@ -54,23 +56,14 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True):
     disturbances: str = "ideal"
 
 
-class Manifest(msgspec.Struct, frozen=True, kw_only=True):
-    """`train.json`: written when a run begins; a resumed run must match it.
+class PgpeManifest(TrainingManifest[Options], Generic[Options], frozen=True, kw_only=True):
+    """`train.json` of PGPE.
 
     Attributes:
-        settings: What was asked for.
         parameters: All the player's parameters at the start, as in a parameter file.
-        profile: The disturbances themselves.
-        versions: Of the software that results depend on.
-        created: Local time, ISO 8601.
     """
 
-    settings: Settings
     parameters: dict[str, Any]
-    profile: Disturbances
-    versions: dict[str, str]
-    created: str
-    format: int = 1
 
 
 class RolloutJob(msgspec.Struct, frozen=True):
@@ -124,6 +117,11 @@ class Iteration(msgspec.Struct, frozen=True, kw_only=True):
     multiplier: float
     steps: int
     seconds: float
+
+    @property
+    def key(self) -> int:
+        """Its number."""
+        return self.iteration
 
     @property
     def mean_return(self) -> float:

@@ -12,7 +12,7 @@ from typing import Literal, Protocol, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.errors import AirHockeyError
+from airhockey.learning.diverged import DivergedError
 from airhockey.learning.pgpe.hyperpolicy import Hyperpolicy
 
 Array = NDArray[np.float64]
@@ -20,10 +20,6 @@ Baseline = Literal["none", "mean", "moving", "optimal"]
 BASELINES: tuple[str, ...] = get_args(Baseline)
 _MEMORY = 0.8
 """Share of the moving baseline that an iteration keeps."""
-
-
-class DivergedError(AirHockeyError):
-    """The search went astray; what it had before is kept."""
 
 
 class Search(Protocol):

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey import envs
-from airhockey.agents.base import AgentBase
 from airhockey.agents.table import CONTACT, HOME
 from airhockey.agents.thesis.agent import ThesisAgent
 from airhockey.agents.thesis.parameters import ThesisParameters
@@ -18,6 +17,8 @@ from airhockey.envs.tasks import Reward, TaskReward, reward_for
 from airhockey.envs.tasks.hit import HitReward
 from airhockey.envs.tasks.positions import puck_and_mallet
 from airhockey.errors import ConfigurationError
+from airhockey.evaluator.isolation.handle import LocalAgent
+from airhockey.evaluator.play.seat import Care, Seat
 
 Array = NDArray[np.float64]
 
@@ -72,16 +73,16 @@ class Stage:
         elif self.task == "home":
             self.reward = TaskReward(accomplished=at_home)
 
-    def player(self, parameters: ThesisParameters) -> AgentBase:
-        """The rule-based player; a switcher is offered every task, and on the way home there is none."""
+    def seat(self, parameters: ThesisParameters) -> Seat:
+        """The seat of the rule-based player; a switcher is offered every task, and on the way home there is none."""
         env_info = dict(self.env.env_info)
         if self.task in ("switcher", "home"):
             env_info["env_name"] = "tournament" if self.task == "switcher" else f"{self.name.partition('-')[0]}-home"
-        return ThesisAgent(env_info, parameters=parameters)
+        agent = ThesisAgent(env_info, parameters=parameters)
+        return Seat(LocalAgent(agent), self.env.formats[0], Care())
 
-    def begin(self, seed: np.random.SeedSequence) -> Array:
-        """Start an episode; gives the observation."""
-        observation = self.env.reset(seed=seed)
+    def place(self, observation: Array, seed: np.random.SeedSequence) -> Array:
+        """Put the mallet where the way home is trained from; gives the observation to begin with, others as it is."""
         if self.task != "home":
             return observation
         random = np.random.default_rng(seed.generate_state(4))

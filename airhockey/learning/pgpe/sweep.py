@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.errors import AirHockeyError
-from airhockey.evaluator.engines import InProcess, Lost, Processes
-from airhockey.learning.pgpe.records import Manifest, Outcome, RolloutJob
+from airhockey.evaluator.engines.engine import InProcess
+from airhockey.evaluator.engines.pool import JobFailed
+from airhockey.evaluator.engines.processes import Processes
+from airhockey.learning.pgpe.records import Outcome, PgpeManifest, RolloutJob, Settings
 from airhockey.learning.pgpe.rollouts import Rollouts
 from airhockey.learning.pgpe.trainable import ranges
 
@@ -39,7 +41,7 @@ class SweepPoint:
 
 
 def sweep(
-    manifest: Manifest,
+    manifest: PgpeManifest[Settings],
     mean: Sequence[float],
     name: str,
     points: int,
@@ -56,7 +58,7 @@ def sweep(
         episodes: Played with each.
         engine: Where they are played.
     """
-    settings = msgspec.structs.replace(manifest.settings, common_random_numbers=True)
+    settings = msgspec.structs.replace(manifest.options, common_random_numbers=True)
     column = settings.names.index(name)
     values = np.linspace(ranges()[name].lower, ranges()[name].upper, points)
     jobs = []
@@ -64,10 +66,10 @@ def sweep(
         theta = (*mean[:column], float(value), *mean[column + 1 :])
         jobs += [RolloutJob(_SWEEP, index, episode, theta) for episode in range(episodes)]
     outcomes: list[dict[int, Outcome]] = [{} for _ in values]
-    player = Rollouts(msgspec.structs.replace(manifest, settings=settings))
+    player = Rollouts(msgspec.structs.replace(manifest, options=settings))
     for job, outcome in (engine or InProcess()).run(player, jobs):
-        if isinstance(outcome, Lost) or outcome.error is not None:
-            why = outcome.reason if isinstance(outcome, Lost) else outcome.error
+        if isinstance(outcome, JobFailed) or outcome.error is not None:
+            why = outcome.reason if isinstance(outcome, JobFailed) else outcome.error
             raise AirHockeyError(f"the player failed with {name} = {values[job.candidate]:g}: {why}")
         outcomes[job.candidate][job.episode] = outcome
     return [_point(value, [one[k] for k in range(episodes)]) for value, one in zip(values, outcomes, strict=True)]

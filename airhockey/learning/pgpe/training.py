@@ -1,9 +1,9 @@
 """A training run: ask for parameters, play episodes with them, tell what they were worth, keep everything."""
 
 import contextlib
-import datetime
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,20 +11,19 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey import envs
 from airhockey.agents.thesis.parameters import ThesisParameters
-from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator.checks import check_versions
-from airhockey.evaluator.engines import InProcess, Lost, Processes, Shift
-from airhockey.learning.pgpe.folder import TrainingFolder, read_training
+from airhockey.evaluator.engines.engine import InProcess
+from airhockey.evaluator.engines.pool import JobFailed, Pool
+from airhockey.evaluator.engines.processes import Processes
+from airhockey.learning.diverged import DivergedError
+from airhockey.learning.pgpe.folder import TrainingFolder
 from airhockey.learning.pgpe.hyperpolicy import Hyperpolicy
 from airhockey.learning.pgpe.penalty_budget import PenaltyBudget
-from airhockey.learning.pgpe.records import Iteration, Manifest, Outcome, RolloutJob, Settings
+from airhockey.learning.pgpe.records import Iteration, Outcome, RolloutJob, Settings
 from airhockey.learning.pgpe.rollouts import Rollouts
 from airhockey.learning.pgpe.schedule import learning_rate
-from airhockey.learning.pgpe.search import DivergedError, Pgpe, Search, check_progress
-from airhockey.learning.pgpe.stage import environments_of
+from airhockey.learning.pgpe.search import Pgpe, Search, check_progress
 from airhockey.learning.pgpe.trainable import bounds, plain
 
 Array = NDArray[np.float64]
@@ -42,42 +41,10 @@ def begin(settings: Settings, parameters: ThesisParameters, path: Path) -> Train
     Raises:
         ConfigurationError: A setting has no meaning, or the folder holds something or cannot be written.
     """
-    check(settings)
-    manifest = Manifest(
-        settings=settings,
-        parameters=plain(parameters),
-        profile=load_disturbances(settings.disturbances),
-        versions=envs.versions(),
-        created=datetime.datetime.now().astimezone().isoformat(timespec="seconds"),
-    )
-    return TrainingFolder.create(path, manifest)
+    return TrainingFolder.begin(settings, path, parameters=plain(parameters))
 
 
-def check(settings: Settings) -> None:
-    """Find the mistakes in a run's settings; raises `ConfigurationError`."""
-    environments_of(settings.task, settings.robot)
-    if not 0.0 < settings.discount <= 1.0:
-        raise ConfigurationError(f"the discount must be above 0 and at most 1, not {settings.discount:g}")
-    if settings.discount == 1.0 and settings.reward == "thesis" and settings.task in ("hit", "switcher"):
-        raise ConfigurationError("a goal is worth 1 / (1 - discount): the thesis's reward needs a discount below 1")
-    if settings.candidates < 2:
-        raise ConfigurationError(f"--candidates must be at least 2 to compare, not {settings.candidates}")
-    if not settings.learning_rate > 0.0:
-        raise ConfigurationError(f"the learning rate must be positive, not {settings.learning_rate:g}")
-    if settings.max_penalty is not None and not settings.max_penalty >= 0.0:
-        raise ConfigurationError(
-            f"the penalty budget must be 0 or more points per episode, not {settings.max_penalty:g}"
-        )
-    for name in ("multiplier_rate", "sigma_share"):
-        if not getattr(settings, name) >= 0.0:
-            raise ConfigurationError(f"the {name.replace('_', ' ')} must be 0 or more, not {getattr(settings, name):g}")
-    lower, upper = bounds(settings.names)
-    for name, value, low, high in zip(settings.names, settings.mean, lower, upper, strict=True):
-        if not low <= value <= high:
-            raise ConfigurationError(f"{name} starts at {value:g}, but must be from {low:g} to {high:g}")
-
-
-def take_up(path: Path, asked: Mapping[str, Any] | None = None) -> TrainingFolder:
+def resume(path: Path, asked: Mapping[str, Any] | None = None) -> TrainingFolder:
     """Take up a run that was interrupted, or let a finished one go on.
 
     Args:
@@ -87,20 +54,20 @@ def take_up(path: Path, asked: Mapping[str, Any] | None = None) -> TrainingFolde
     Raises:
         ConfigurationError: There is no run, it is another than the one asked for, or the software is.
     """
-    manifest = read_training(path)
-    for name, value in (asked or {}).items():
-        began_with = getattr(manifest.settings, name)
-        if name == "iterations":
-            settings = msgspec.structs.replace(manifest.settings, iterations=value)
-            if settings.schedule in ("linear", "cosine") and value != began_with:
-                raise ConfigurationError(
-                    f"the run's learning rate ends after {began_with} iterations ({settings.schedule}): it cannot have {value}"
-                )
-            manifest = msgspec.structs.replace(manifest, settings=settings)
-        elif value != began_with:
-            raise ConfigurationError(f"the run in {str(path)!r} has {name} {began_with!r}, not {value!r}")
-    check_versions(manifest.versions, path)
-    return TrainingFolder.open(path, manifest)
+    asked = dict(asked or {})
+    iterations = asked.pop("iterations", None)
+    folder = TrainingFolder.resume(path, asked)
+    settings = folder.manifest.options
+    if iterations is None or iterations == settings.iterations:
+        return folder
+    with folder.released_on_error():
+        if settings.schedule in ("linear", "cosine"):
+            raise ConfigurationError(
+                f"the run's learning rate ends after {settings.iterations} iterations ({settings.schedule}): "
+                f"it cannot have {iterations}"
+            )
+        folder.change(msgspec.structs.replace(settings, iterations=iterations))
+    return folder
 
 
 def train(
@@ -114,7 +81,7 @@ def train(
     The search itself is not stored: it is made again from the journal, by asking and telling what was told.
 
     Args:
-        folder: From `begin` or `take_up`; it is closed afterwards.
+        folder: From `begin` or `resume`; it is closed afterwards.
         engine: Where episodes are played; here, one by one, if not given.
         on_episode: Called with every outcome as it comes.
         on_iteration: Called with every iteration that is finished.
@@ -124,19 +91,19 @@ def train(
         AirHockeyError: The disk is full, or workers do not start.
         KeyboardInterrupt: The user's; the finished iterations are kept.
     """
-    settings = folder.manifest.settings
-    with folder, (engine or InProcess()).shift(Rollouts(folder.manifest)) as shift:
-        stand = _Stand(shift, settings, on_episode)
-        search, budget = search_of(settings), PenaltyBudget(settings.max_penalty, settings.multiplier_rate)
-        for done in folder.iterations:
-            theta = search.ask(_random(settings, done.iteration), settings.candidates)
+    settings = folder.manifest.options
+    with folder, (engine or InProcess()).pool(Rollouts(folder.manifest)) as pool:
+        stand = _Stand(pool, settings, on_episode)
+        learner = _Learner(settings, search_of(settings), PenaltyBudget(settings.max_penalty, settings.multiplier_rate))
+        for done in folder.records:
+            theta = learner.ask(done.iteration)
             if not np.array_equal(theta, np.array(done.theta)):
                 raise AirHockeyError(
                     f"iteration {done.iteration} of the journal is not what this search would have tried"
                 )
-            _learn(search, budget, done.iteration, settings, theta, np.array(done.returns), np.array(done.penalties))
-        for number in range(len(folder.iterations), settings.iterations):
-            iteration = _iterate(search, budget, number, settings, stand.play)
+            learner.learn(done.iteration, theta, np.array(done.returns), np.array(done.penalties))
+        for number in range(len(folder.records), settings.iterations):
+            iteration = _iterate(learner, number, stand.play)
             folder.add(iteration)
             if on_iteration is not None:
                 on_iteration(iteration)
@@ -145,8 +112,8 @@ def train(
 class _Stand:
     """Where the episodes of a run are played."""
 
-    def __init__(self, shift: Shift[RolloutJob, Outcome], settings: Settings, on_episode: OnEpisode | None) -> None:
-        self._shift, self._episodes, self._on_episode = shift, settings.episodes, on_episode
+    def __init__(self, pool: Pool[RolloutJob, Outcome], settings: Settings, on_episode: OnEpisode | None) -> None:
+        self._pool, self._episodes, self._on_episode = pool, settings.episodes, on_episode
 
     def play(self, number: int, theta: Array) -> list[list[Outcome]]:
         """The outcomes of each candidate's episodes, in order. θ of shape (N, d)."""
@@ -156,9 +123,9 @@ class _Stand:
             for episode in range(self._episodes)
         ]
         outcomes: dict[tuple[int, int], Outcome] = {}
-        with contextlib.closing(self._shift.run(jobs)) as results:
+        with contextlib.closing(self._pool.run(jobs)) as results:
             for job, result in results:
-                outcome = Outcome(error=result.reason) if isinstance(result, Lost) else result
+                outcome = Outcome(error=result.reason) if isinstance(result, JobFailed) else result
                 outcomes[job.candidate, job.episode] = outcome
                 if self._on_episode is not None:
                     self._on_episode(outcome)
@@ -185,31 +152,36 @@ def search_of(settings: Settings) -> Search:
     )
 
 
-def _random(settings: Settings, iteration: int) -> np.random.Generator:
-    """The generator of what an iteration tries: it depends on nothing that happened before."""
-    return np.random.default_rng(np.random.SeedSequence(settings.seed, spawn_key=(_SEARCH, iteration)))
+@dataclass(frozen=True)
+class _Learner:
+    """A search with the budget of penalty points that its values are charged for."""
+
+    settings: Settings
+    search: Search
+    budget: PenaltyBudget
+
+    def ask(self, number: int) -> Array:
+        """What an iteration tries; its generator depends on nothing that happened before. Shape (N, d)."""
+        sequence = np.random.SeedSequence(self.settings.seed, spawn_key=(_SEARCH, number))
+        return self.search.ask(np.random.default_rng(sequence), self.settings.candidates)
+
+    def learn(self, number: int, theta: Array, returns: Array, penalties: Array) -> float:
+        """One update; gives the learning rate."""
+        settings = self.settings
+        rate = learning_rate(settings.schedule, settings.learning_rate, number, settings.iterations)
+        self.search.tell(theta, self.budget.values(returns, penalties), rate)
+        self.budget.update(penalties)
+        return rate
+
+    def check_progress(self, returns: Array) -> None:
+        """See `search.check_progress`."""
+        check_progress(self.search, np.array(self.settings.sigma), returns)
 
 
-def _learn(
-    search: Search,
-    budget: PenaltyBudget,
-    number: int,
-    settings: Settings,
-    theta: Array,
-    returns: Array,
-    penalties: Array,
-) -> float:
-    """One update; gives the learning rate."""
-    rate = learning_rate(settings.schedule, settings.learning_rate, number, settings.iterations)
-    search.tell(theta, budget.values(returns, penalties), rate)
-    budget.update(penalties)
-    return rate
-
-
-def _iterate(search: Search, budget: PenaltyBudget, number: int, settings: Settings, play: Play) -> Iteration:
+def _iterate(learner: _Learner, number: int, play: Play) -> Iteration:
     """One iteration of algorithm 2.1 or 2.2."""
     began = time.monotonic()
-    theta = search.ask(_random(settings, number), settings.candidates)
+    theta = learner.ask(number)
     outcomes = play(number, theta)
     returns, penalties, successes = (
         np.array([np.mean([getattr(one, field) for one in of_one]) for of_one in outcomes])
@@ -219,10 +191,10 @@ def _iterate(search: Search, budget: PenaltyBudget, number: int, settings: Setti
     errors = [one.error for one in flat if one.error is not None]
     if errors:
         raise DivergedError(f"iteration {number}: the player failed {len(errors)} of {len(flat)} episodes; {errors[0]}")
-    check_progress(search, np.array(settings.sigma), returns)
-    multiplier = budget.multiplier
-    rate = _learn(search, budget, number, settings, theta, returns, penalties)
-    check_progress(search, np.array(settings.sigma), returns)
+    learner.check_progress(returns)
+    multiplier = learner.budget.multiplier
+    rate = learner.learn(number, theta, returns, penalties)
+    learner.check_progress(returns)
     violated = sorted({name for one in flat for name in one.violated})
     return Iteration(
         iteration=number,
@@ -231,8 +203,8 @@ def _iterate(search: Search, budget: PenaltyBudget, number: int, settings: Setti
         penalties=tuple(map(float, penalties)),
         successes=tuple(map(float, successes)),
         violations={name: sum(name in one.violated for one in flat) / len(flat) for name in violated},
-        mean=tuple(map(float, search.mean)),
-        sigma=tuple(map(float, search.sigma)),
+        mean=tuple(map(float, learner.search.mean)),
+        sigma=tuple(map(float, learner.search.sigma)),
         learning_rate=rate,
         multiplier=multiplier,
         steps=sum(one.steps for one in flat),

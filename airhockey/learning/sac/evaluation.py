@@ -3,6 +3,7 @@
 import numpy as np
 
 from airhockey.agents.atacom.network import Network
+from airhockey.envs.disturbances import Disturbances
 from airhockey.learning.sac.records import Settings
 from airhockey.learning.sac.trainer import make_env
 
@@ -10,18 +11,18 @@ UNSEEN = 1
 """Second entry of the evaluation's seeds; those of training have one entry only."""
 
 
-def evaluate_skill(settings: Settings, network: Network, episodes: int) -> dict[str, float]:
+def evaluate_skill(settings: Settings, profile: Disturbances, network: Network, episodes: int) -> dict[str, float]:
     """Play the policy's mean.
 
     Args:
-        settings: Of the run.
+        settings, profile: Of the run.
         network: The policy.
         episodes: How many.
 
     Returns:
         Share of successes, mean return, and share of control steps that violated a constraint.
     """
-    env, returns, successes = make_env(settings), [], 0
+    env, returns, successes = make_env(settings, profile), [], 0
     for k in range(episodes):
         seed = np.random.SeedSequence(settings.seed, spawn_key=(k, UNSEEN))
         observation, info = env.reset(options={"seed": seed})

@@ -10,10 +10,8 @@ The checkpoint is this program's own pickle: like any other, it must not be take
 """
 
 import csv
-import datetime
 import os
 import pickle
-from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -21,53 +19,34 @@ import yaml
 
 from airhockey import envs
 from airhockey.agents.atacom.network import Network
-from airhockey.errors import ConfigurationError
-from airhockey.evaluator.disk import begin_folder, disk_errors, lock_folder, replace_file
+from airhockey.evaluator.runs.disk import disk_errors, replace_file
+from airhockey.evaluator.runs.folder import RunFolder
+from airhockey.evaluator.runs.manifest import TRAINING, TrainingManifest
 from airhockey.learning.sac.plots import LOG
-from airhockey.learning.sac.records import Line, Manifest, Settings
+from airhockey.learning.sac.records import Line, Settings
 
-MANIFEST, CHECKPOINT, NETWORK, CARD = "train.json", "checkpoint.pkl", "network.npz", "card.yaml"
+CHECKPOINT, NETWORK, CARD = "checkpoint.pkl", "network.npz", "card.yaml"
 
 
-class SkillFolder:
-    """The folder, opened for writing by one process at a time.
+class SkillFolder(RunFolder[Settings, Any]):
+    """The folder of a skill's training, opened for writing; its journal is the log."""
 
-    Attributes:
-        path: The folder.
-        manifest: What the run is.
-    """
-
-    def __init__(self, path: Path, manifest: Manifest) -> None:
-        """Use `create` or `open`."""
-        self.path, self.manifest = path, manifest
-        self._lock = lock_folder(path)
+    name, options_type = TRAINING, Settings
+    manifest_type = TrainingManifest
 
     @classmethod
-    def create(cls, path: Path, settings: Settings) -> "SkillFolder":
-        """Begin a run in a folder that does not exist or is empty; raises `ConfigurationError`."""
-        manifest = Manifest(settings, versions(), datetime.datetime.now().astimezone().isoformat(timespec="seconds"))
-        begin_folder(path, MANIFEST, manifest)
-        return cls(path, manifest)
+    def versions(cls) -> dict[str, str]:
+        """Of all that decides a result."""
+        import stable_baselines3
+        import torch
 
-    @classmethod
-    def open(cls, path: Path) -> "SkillFolder":
-        """Take up a run; raises `ConfigurationError` where there is none, or other software began it."""
-        try:
-            manifest = msgspec.json.decode((path / MANIFEST).read_bytes(), type=Manifest)
-        except OSError:
-            raise ConfigurationError(f"there is no training run in {str(path)!r}: it has no {MANIFEST}") from None
-        except (msgspec.MsgspecError, ValueError) as error:
-            raise ConfigurationError(f"cannot read {str(path / MANIFEST)!r}: {error}") from error
-        for name, version in versions().items():
-            if manifest.versions.get(name) != version:
-                raise ConfigurationError(
-                    f"the run in {str(path)!r} was begun with {name} {manifest.versions.get(name)}, this is {version}"
-                )
-        return cls(path, manifest)
+        return {
+            **envs.versions(), "torch": str(torch.__version__), "stable_baselines3": str(stable_baselines3.__version__)
+        }  # fmt: skip
 
-    def close(self) -> None:
-        """Let others at the folder."""
-        os.close(self._lock)
+    def recover(self) -> list[Any]:
+        """Nothing yet: `load` mends the log by the checkpoint."""
+        return []
 
     def add(self, line: Line) -> None:
         """A line of the log."""
@@ -100,7 +79,7 @@ class SkillFolder:
         """Where the policy comes from, and what it reaches."""
         card = {
             "data": "episodes simulated by this package, each with a seed of its own; nothing else",
-            "settings": msgspec.structs.asdict(self.manifest.settings),
+            "settings": msgspec.structs.asdict(self.manifest.options),
             "figures": figures,
             "versions": self.manifest.versions,
             "made": self.manifest.created,
@@ -108,13 +87,3 @@ class SkillFolder:
         text = yaml.safe_dump(card, sort_keys=False, allow_unicode=True)
         with disk_errors(self.path):
             replace_file(self.path / CARD, text.encode())
-
-
-def versions() -> dict[str, str]:
-    """Of all that decides a result."""
-    import stable_baselines3
-    import torch
-
-    return {
-        **envs.versions(), "torch": str(torch.__version__), "stable_baselines3": str(stable_baselines3.__version__)
-    }  # fmt: skip

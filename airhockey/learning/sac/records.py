@@ -43,14 +43,6 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     save_every: int = 250
 
 
-class Manifest(msgspec.Struct, frozen=True):
-    """A run's beginning: its settings, and the software that plays and learns."""
-
-    settings: Settings
-    versions: dict[str, str]
-    created: str
-
-
 class Line(msgspec.Struct, frozen=True):
     """A line of the log.
 

@@ -18,7 +18,8 @@ from stable_baselines3.common.logger import Logger
 from airhockey.agents.atacom.features import ACTION_MIRROR
 from airhockey.agents.atacom.network import Network
 from airhockey.agents.atacom.skill import SKILLS
-from airhockey.errors import AirHockeyError
+from airhockey.envs.disturbances import Disturbances
+from airhockey.learning.diverged import DivergedError
 from airhockey.learning.sac.algorithms import OAC, MirroredReplay
 from airhockey.learning.sac.folder import SkillFolder
 from airhockey.learning.sac.records import Line, Settings
@@ -27,10 +28,6 @@ from airhockey.learning.sac.skill_tasks import TASKS
 
 LARGEST_BUFFER = 500_000
 """Transitions; older ones are forgotten."""
-
-
-class DivergedError(AirHockeyError):
-    """A return or a parameter is not finite."""
 
 
 @dataclass
@@ -47,9 +44,9 @@ class Progress:
     owed: float = 0.0
 
 
-def make_env(settings: Settings) -> SkillEnv:
-    """The environment of a run."""
-    return TASKS[settings.task](settings.robot, settings.disturbances)
+def make_env(settings: Settings, profile: Disturbances) -> SkillEnv:
+    """The environment of a run, with the disturbances that it began with."""
+    return TASKS[settings.task](settings.robot, profile)
 
 
 def make_model(settings: Settings, env: SkillEnv) -> SAC:
@@ -91,8 +88,8 @@ class Trainer:
             folder: Of the run.
         """
         torch.set_num_threads(1)
-        self._folder, self.settings, self.progress = folder, folder.manifest.settings, Progress()
-        self.env = make_env(self.settings)
+        self._folder, self.settings, self.progress = folder, folder.manifest.options, Progress()
+        self.env = make_env(self.settings, folder.manifest.profile)
         self.model = make_model(self.settings, self.env)
         self._rows: list[tuple[float, float, int, int]] = []
         state = folder.load()

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.evaluator.games.records import HOME, Event, Side
+from airhockey.evaluator.runs.game_records import HOME, Event, Side
 from airhockey.reporting import words
 from airhockey.reporting.draw.axes import Scale, picture, round_step, text
 from airhockey.reporting.markup import Markup, element, number

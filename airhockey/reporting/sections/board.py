@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from airhockey.evaluator.judging import CLASSES, wilson_interval
+from airhockey.evaluator.judging.tasks import CLASSES, OFFICIAL_EPISODES, wilson_interval
 from airhockey.reporting import words
 from airhockey.reporting.blocks import Row, badge, figure, figures, paragraphs, section, table
 from airhockey.reporting.draw.axes import Scale
@@ -10,7 +10,7 @@ from airhockey.reporting.draw.intervals import Interval, interval_plot
 from airhockey.reporting.entries import Board, Overall, counting, in_order
 from airhockey.reporting.markup import Child, Markup, element, joined
 from airhockey.reporting.page import link
-from airhockey.reporting.results import OFFICIAL_EPISODES, Task
+from airhockey.reporting.results import Task
 
 Links = Callable[[Task], Child]
 """Gives the links of a run: its report and its videos."""
@@ -58,8 +58,8 @@ def task_section(board: Board, env: str, entry_link: Callable[[str], Child], lin
         "begun",
         "see",
     )
-    rows = [(task.deployability, _task_row(entry_link(name), task, links)) for name, task in ranked]
-    plot = [_interval_row(name, task) for name, task in sorted(ranked, key=lambda one: -one[1].success)]
+    rows = [(task.verdict.official_class, _task_row(entry_link(name), task, links)) for name, task in ranked]
+    plot = [_interval_row(name, task) for name, task in sorted(ranked, key=lambda one: -one[1].verdict.success)]
     return section(
         f"{env}-{_anchor(board)}",
         f"Disturbances {board.label}",
@@ -119,7 +119,7 @@ def _groups(head: Row, rows: Sequence[tuple[str, list[Child]]], what: str) -> Ma
 
 
 def _overall_row(one: Overall, weights: Mapping[str, float], entry_link: Callable[[str], Child]) -> list[Child]:
-    shares = [f"{words.percent(one.tasks[env].success)}{_star(one.tasks[env])}" for env in weights]
+    shares = [f"{words.percent(one.tasks[env].verdict.success)}{_star(one.tasks[env])}" for env in weights]
     return [entry_link(one.name), element("strong", f"{one.score:.3f}"), *shares, f"{one.penalty:g}"]
 
 
@@ -127,10 +127,10 @@ def _task_row(entry: Child, task: Task, links: Links) -> list[Child]:
     mean, _, longest = task.computation_time
     return [
         entry,
-        element("strong", words.percent(task.success)),
-        words.interval(task.successes, task.episodes),
+        element("strong", words.percent(task.verdict.success)),
+        words.interval(task.verdict.successes, task.verdict.episodes),
         _episodes(task),
-        f"{task.penalty:g}",
+        f"{task.verdict.penalty:g}",
         words.milliseconds(mean),
         words.milliseconds(longest),
         task.run.created[:10],
@@ -142,11 +142,11 @@ def _history_row(task: Task, links: Links, counts: bool) -> list[Child]:
     return [
         task.env,
         _when(task),
-        words.percent(task.success),
-        words.interval(task.successes, task.episodes),
+        words.percent(task.verdict.success),
+        words.interval(task.verdict.successes, task.verdict.episodes),
         _episodes(task),
-        f"{task.penalty:g}",
-        badge(task.deployability),
+        f"{task.verdict.penalty:g}",
+        badge(task.verdict.official_class),
         task.run.versions.get("airhockey", "–"),
         "counts" if counts else "",
         links(task),
@@ -158,8 +158,8 @@ def _when(task: Task) -> str:
 
 
 def _interval_row(label: str, task: Task) -> Interval:
-    low, high = wilson_interval(task.successes, task.episodes)
-    return Interval(label, words.percent(task.success), 100 * low, 100 * task.success, 100 * high)
+    low, high = wilson_interval(task.verdict.successes, task.verdict.episodes)
+    return Interval(label, words.percent(task.verdict.success), 100 * low, 100 * task.verdict.success, 100 * high)
 
 
 def _plot(rows: Sequence[Interval], what: str) -> Markup:
@@ -168,12 +168,12 @@ def _plot(rows: Sequence[Interval], what: str) -> Markup:
 
 
 def _episodes(task: Task) -> str:
-    return f"{task.episodes:,}{_star(task)}"
+    return f"{task.verdict.episodes:,}{_star(task)}"
 
 
 def _star(task: Task) -> str:
     """Marks runs that are shorter than an official evaluation; the foot of every page explains it."""
-    return "*" if task.episodes < OFFICIAL_EPISODES else ""
+    return "*" if task.verdict.episodes < OFFICIAL_EPISODES else ""
 
 
 def _anchor(board: Board) -> str:

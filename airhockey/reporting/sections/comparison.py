@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import msgspec
 
-from airhockey.evaluator.judging import wilson_interval
+from airhockey.evaluator.judging.tasks import wilson_interval
 from airhockey.reporting import statistics, words
 from airhockey.reporting.blocks import figure, figures, paragraphs, section, table, tables
 from airhockey.reporting.draw.axes import Scale
@@ -38,7 +38,9 @@ class Comparison:
 def compare(first: Task, second: Task) -> Comparison:
     """Compare two runs of the same task, episode by episode where the episodes' seeds agree."""
     if not same_seeds(first, second):
-        difference = statistics.compare_samples(first.successes, first.episodes, second.successes, second.episodes)
+        difference = statistics.compare_samples(
+            first.verdict.successes, first.verdict.episodes, second.verdict.successes, second.verdict.episodes
+        )
         return Comparison(first, second, difference, None)
     one, other = ({record.index: record.success for record in task.records} for task in (first, second))
     shared = one.keys() & other.keys()
@@ -143,9 +145,9 @@ def _condition(task: Task, name: str) -> str:
 def _success(env: str, tasks: Sequence[Task]) -> Markup:
     rows = []
     for k, task in enumerate(tasks):
-        low, high = wilson_interval(task.successes, task.episodes)
-        value = words.percent(task.success)
-        rows.append(Interval(task.label, value, 100 * low, 100 * task.success, 100 * high, _COLOURS[k % 4]))
+        low, high = wilson_interval(task.verdict.successes, task.verdict.episodes)
+        value = words.percent(task.verdict.success)
+        rows.append(Interval(task.label, value, 100 * low, 100 * task.verdict.success, 100 * high, _COLOURS[k % 4]))
     title = f"Success in {env}: " + "; ".join(f"{row.label} {row.value}" for row in rows)
     least = min(row.low for row in rows)
     scale = Scale(max(0.0, 10.0 * (least // 10.0)), 100.0)

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from airhockey.evaluator.games.records import AWAY, HOME, SIDES, Event, GameRecord, PlayerResult, Side
+from airhockey.evaluator.analysis.game import GameAnalysis
+from airhockey.evaluator.analysis.shots import OUTCOMES, Shot
+from airhockey.evaluator.runs.game_records import AWAY, HOME, SIDES, Event, GameRecord, PlayerResult, Side
 from airhockey.reporting import words
 from airhockey.reporting.blocks import Row, badge, details, figure, figures, paragraphs, table, wide
 from airhockey.reporting.draw.table_map import arrows, cells, density_cells, table_map
 from airhockey.reporting.draw.timeline import SHOWN, timeline
-from airhockey.reporting.films import OUTCOMES, FilmData, Shot
 from airhockey.reporting.markup import Markup, element, joined
 
 _MOST_SHOTS = 150  # of each outcome that are drawn
@@ -23,7 +24,7 @@ class PlayedGame:
     """A game with its film, where there is one."""
 
     record: GameRecord
-    film: FilmData | None
+    film: GameAnalysis | None
 
     def name(self, side: Side) -> str:
         """Who played on a side."""
@@ -80,8 +81,9 @@ def shots_block(games: Sequence[PlayedGame], players: Sequence[str], short: dict
     rows = [_shot_row(player, short.get(player, player), filmed) for player in players]
     head = ("player", "touches", "shots", "on target", "goals", "saved", "median speed", "highest", "puck on its side")
     note = (
-        "A shot is a hit after which the puck crosses the middle line before anybody touches it again; it is on target if "
-        "its path, mirrored at the rims, ends in the goal. All of this is read off the films."
+        "A shot is a hit after which the puck crosses the middle line before anybody touches it again; it is on target "
+        "if it scores, or if the opponent touched what would have slid into the goal, friction and side rims counted. All of "
+        "this is read off the games' trajectories."
     )
     if any(len(shots_of(player, filmed)) > _MOST_SHOTS for player in players):
         note += f" At most {_MOST_SHOTS} shots of each outcome are drawn and listed."

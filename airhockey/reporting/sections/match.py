@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from airhockey.evaluator.runs.reader import Match, short_name
 from airhockey.reporting import words
 from airhockey.reporting.blocks import Row, paragraphs, section, table
 from airhockey.reporting.markup import Child, Markup, element, joined
@@ -13,7 +14,6 @@ from airhockey.reporting.sections.games import (
     game_title,
     shots_block,
 )
-from airhockey.reporting.sources import Match, short_name
 
 _OPEN = 4  # games of a match that are shown unfolded
 

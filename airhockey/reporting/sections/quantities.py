@@ -25,16 +25,16 @@ def quantities(task: Task, kinds: Sequence[str], short: bool = False) -> list[tu
         ("mean time", "p99", "longest") if short else ("draw_action, mean", "draw_action, p99", "draw_action, longest")
     )
     return [
-        ("success", element("strong", words.percent(task.success))),
-        ("95 % interval", words.interval(task.successes, task.episodes)),
-        ("episodes", f"{task.episodes:,}"),
-        ("penalty points", f"{task.penalty:g}"),
-        ("deployability", badge(task.deployability)),
+        ("success", element("strong", words.percent(task.verdict.success))),
+        ("95 % interval", words.interval(task.verdict.successes, task.verdict.episodes)),
+        ("episodes", f"{task.verdict.episodes:,}"),
+        ("penalty points", f"{task.verdict.penalty:g}"),
+        ("deployability", badge(task.verdict.official_class)),
         *((f"{words.constraint(name)}{violated}", str(task.violations.get(name, "–"))) for name in kinds),
         (times[0], words.milliseconds(mean)),
         (times[1], "–" if p99 is None else words.milliseconds(p99)),
         (times[2], words.milliseconds(longest)),
-        ("failed" if short else "episodes failed by the agent", str(task.failures)),
+        ("failed" if short else "episodes failed by the agent", str(task.verdict.failures)),
     ]
 
 

@@ -8,14 +8,14 @@ import msgspec
 
 from airhockey.envs.disturbances import Disturbances
 from airhockey.envs.editions import edition
-from airhockey.evaluator.judging import PHASES
-from airhockey.evaluator.judging import score as phase_score
+from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES, PHASES
+from airhockey.evaluator.judging.tasks import score as phase_score
+from airhockey.evaluator.runs.reader import Match, Nothing, Run, Source, Tournament, short_name
 from airhockey.reporting import words
 from airhockey.reporting.blocks import Row, badge, details, facts, paragraphs, section, table
 from airhockey.reporting.markup import Child, Markup, element, joined
-from airhockey.reporting.results import OFFICIAL_EPISODES, Task
+from airhockey.reporting.results import Task
 from airhockey.reporting.sections.quantities import FEW, kinds_of, one_below_another, quantities, side_by_side
-from airhockey.reporting.sources import Match, Nothing, Run, Source, Tournament, short_name
 
 
 def summary(tasks: Sequence[Task]) -> Markup:
@@ -25,7 +25,7 @@ def summary(tasks: Sequence[Task]) -> Markup:
         "Violations count episodes; each costs its points once per episode. A control step leaves draw_action 20 ms. An "
         "episode that the agent failed by an error is no success."
     ]
-    if any(task.episodes != OFFICIAL_EPISODES for task in tasks):
+    if any(task.verdict.episodes != OFFICIAL_EPISODES for task in tasks):
         sentences.append(f"Deployability is the class of the penalty at the rate of {OFFICIAL_EPISODES} episodes.")
     if len(tasks) == 1:
         kinds = kinds_of(tasks)
@@ -72,10 +72,16 @@ def conditions(sources: Iterable[Source], labels: dict[int, str]) -> Markup:
 def _key_figures(task: Task) -> Markup:
     mean, p99, longest = task.computation_time
     pairs: list[tuple[str, Child]] = [
-        ("success", [element("b", words.percent(task.success)), words.interval(task.successes, task.episodes)]),
-        ("penalty points", [element("b", f"{task.penalty:g}"), badge(task.deployability)]),
+        (
+            "success",
+            [
+                element("b", words.percent(task.verdict.success)),
+                words.interval(task.verdict.successes, task.verdict.episodes),
+            ],
+        ),
+        ("penalty points", [element("b", f"{task.verdict.penalty:g}"), badge(task.verdict.official_class)]),
         ("draw_action, p99", [element("b", words.milliseconds(p99 or mean)), f"longest {words.milliseconds(longest)}"]),
-        ("episodes", [element("b", f"{task.episodes:,}"), f"{task.failures} failed by the agent"]),
+        ("episodes", [element("b", f"{task.verdict.episodes:,}"), f"{task.verdict.failures} failed by the agent"]),
     ]
     return element("div", facts(pairs), class_="key")
 
@@ -85,7 +91,7 @@ def _phases(tasks: Sequence[Task]) -> list[str]:
     said = []
     for run in {id(task.run): task.run for task in tasks}.values():
         own = [task for task in tasks if task.run is run]
-        phase, score = phase_score({task.env: task.success for task in own}, own[0].rules)
+        phase, score = phase_score({task.env: task.verdict.success for task in own}, own[0].rules)
         if score is not None:
             robot = next(robot for robot, name in PHASES.items() if name == phase)
             weights = edition(own[0].rules.edition).score_weights[robot]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from airhockey.envs.specs import CONTROL_PERIOD
-from airhockey.evaluator.judging import wilson_interval
+from airhockey.evaluator.judging.tasks import wilson_interval
 from airhockey.reporting import words
 from airhockey.reporting.blocks import figure, figures, paragraphs, section, table
 from airhockey.reporting.draw.distribution import Series, histogram, log_edges, round_edges, rows_of
@@ -151,8 +151,8 @@ def _failures(task: Task) -> Markup | None:
     rows: Sequence[tuple[str, str]] = [
         (reason, str(number)) for reason, number in sorted(counts.items(), key=lambda item: -item[1])[:20]
     ]
-    low, high = wilson_interval(task.failures, task.episodes)
-    said = f"The agent failed {words.count(task.failures, 'episode')} ({low:.1%} – {high:.1%})."
+    low, high = wilson_interval(task.verdict.failures, task.verdict.episodes)
+    said = f"The agent failed {words.count(task.verdict.failures, 'episode')} ({low:.1%} – {high:.1%})."
     return joined(
         element("h3", "Failures of the agent"),
         paragraphs([said]),

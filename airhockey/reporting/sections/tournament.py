@@ -2,15 +2,15 @@
 
 from collections.abc import Sequence
 
-from airhockey.evaluator.games.records import GameRecord
-from airhockey.evaluator.games.schedule import schedule
-from airhockey.evaluator.games.standings import Standings, standings
+from airhockey.evaluator.judging.standings import Standings, standings
+from airhockey.evaluator.runs.game_records import GameRecord
+from airhockey.evaluator.runs.reader import Tournament
+from airhockey.evaluator.schedule import schedule
 from airhockey.reporting.blocks import Row, figure, figures, paragraphs, section, table
 from airhockey.reporting.draw.axes import Scale
 from airhockey.reporting.draw.intervals import Interval, interval_plot
 from airhockey.reporting.markup import Child, Markup, element
 from airhockey.reporting.sections.games import PlayedGame, colours, folded_games, shots_block
-from airhockey.reporting.sources import Tournament
 
 _Z = 1.959964
 
@@ -66,8 +66,10 @@ def standings_table(found: Standings) -> Markup:
         "won",
         "drawn",
         "lost",
-        "goals",
+        "score",
         "difference",
+        "goals",
+        "by faults",
         "penalty",
         "forfeits",
         "rating",
@@ -78,8 +80,10 @@ def standings_table(found: Standings) -> Markup:
             row.name,
             element("strong", str(row.points)),
             *(str(value) for value in (row.played, row.won, row.drawn, row.lost)),
-            f"{row.goals} : {row.conceded}",
+            f"{row.points_for} : {row.points_against}",
             f"{row.difference:+d}".replace("-", "−"),
+            f"{row.goals} : {row.conceded}",
+            str(row.by_faults),
             f"{row.penalty:g}",
             str(row.forfeits),
             f"{row.rating:.1f} ± {row.uncertainty:.1f}",

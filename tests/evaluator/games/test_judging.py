@@ -5,9 +5,10 @@ import pytest
 from games import Clock, Stander, new_game, side
 
 from airhockey.envs.editions import edition
-from airhockey.evaluator.games.judging import PenaltyCount, game_class, penalty_limit, tally, winner
-from airhockey.evaluator.games.play import GamePlay
-from airhockey.evaluator.games.records import Variant
+from airhockey.evaluator.isolation.handle import LocalAgent
+from airhockey.evaluator.judging.games import PenaltyCount, game_class, penalty_limit, tally, winner
+from airhockey.evaluator.play.game import GamePlay
+from airhockey.evaluator.runs.game_records import Variant
 
 RULES = edition()
 WHOLE = 45000
@@ -107,7 +108,7 @@ class Reacher(Stander):
 
 def played(first: int, last: int, steps: int) -> GamePlay:
     game = new_game(steps=steps)
-    game.competitors[0].agent = Reacher(game.env, 0, first, last)
+    game.seats[0].agent = LocalAgent(Reacher(game.env, 0, first, last))
     return game
 
 
@@ -138,11 +139,10 @@ def test_the_better_scorer_beyond_the_limit(variant: Variant, expected: str) -> 
     game.options = type(game.options)(steps=100, variant=variant)
     game.begin()
     game.env.game.score[0] = 5
-    game.goals[0] = 5
-    observation = game.env.true_observation
-    for step in range(1, 101):
-        observation = game.step(observation, step)
-    record = game.end(100)
+    game.log.goals[0] = 5
+    for _ in range(100):
+        game.step()
+    record = game.end()
     assert record.home.penalty == 3.0
     assert record.score == (5, 0)
     assert record.home.deployability == "Non-deployable"
@@ -158,7 +158,7 @@ def test_computation_time_is_judged_per_episode(monkeypatch: pytest.MonkeyPatch)
     def think() -> None:
         clock.time += {100: 0.15, 700: 0.03}.get(next(steps), 0.001)
 
-    game.competitors[0].agent = Stander(game.env, 0, think=think)
+    game.seats[0].agent = LocalAgent(Stander(game.env, 0, think=think))
     record = game.play()
     assert (record.home.penalty, record.away.penalty) == (1.5, 0.0)
     assert record.home.violations["computation_time"] == 2

@@ -10,19 +10,20 @@ import pytest
 from games import course, events_of, film, play_one
 
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.cluster import Cluster
-from airhockey.evaluator.engines import Processes
-from airhockey.evaluator.games.film import read_film
-from airhockey.evaluator.games.folder import GameFolder, read_games
-from airhockey.evaluator.games.match import (
+from airhockey.evaluator.engines.cluster import Cluster
+from airhockey.evaluator.engines.processes import Processes
+from airhockey.evaluator.match import (
     MatchOptions,
     MatchResult,
     begin_match,
     match_jobs,
     play_match,
-    take_up_match,
+    resume_match,
 )
-from airhockey.evaluator.games.records import GameOptions
+from airhockey.evaluator.runs.game_folder import GameFolder
+from airhockey.evaluator.runs.game_records import GameOptions, GameRecord
+from airhockey.evaluator.runs.game_trajectories import read_film
+from airhockey.evaluator.runs.journal import read_journal
 from submissions import make_submission
 
 STEPS = 120
@@ -37,7 +38,10 @@ def options(tmp_path_factory: pytest.TempPathFactory) -> MatchOptions:
 
 
 def courses(folder: Path) -> dict[str, Any]:
-    return {record.job.key: (course(record), film(folder, record.job.key)) for record in read_games(folder)}
+    return {
+        record.job.key: (course(record), film(folder, record.job.key))
+        for record in read_journal(folder, GameRecord).records
+    }
 
 
 @pytest.fixture(scope="module")
@@ -77,15 +81,15 @@ def test_taken_up_after_ctrl_c_in_the_order_that_is_left(options: MatchOptions, 
         folder = (
             begin_match(options, tmp_path / "run")
             if not (tmp_path / "run").exists()
-            else take_up_match(tmp_path / "run")
+            else resume_match(tmp_path / "run")
         )
         with pytest.raises(KeyboardInterrupt):
             play_match(folder, None, stop)
-    assert [record.job.key for record in read_games(tmp_path / "run")] == ["0", "1"]
-    play_match(take_up_match(tmp_path / "run"))
+    assert [record.job.key for record in read_journal(tmp_path / "run", GameRecord).records] == ["0", "1"]
+    play_match(resume_match(tmp_path / "run"))
     assert courses(tmp_path / "run") == straight
     played: list[Any] = []
-    play_match(take_up_match(tmp_path / "run"), None, played.append)
+    play_match(resume_match(tmp_path / "run"), None, played.append)
     assert played == []  # a finished match is only reported
 
 
@@ -93,8 +97,8 @@ def test_a_line_that_a_kill_cut_short_is_played_again(folder: Path, straight: An
     copy = shutil.copytree(folder, tmp_path / "copy")
     journal = copy / "journal.jsonl"
     journal.write_bytes(journal.read_bytes()[:-40])
-    assert len(read_games(copy)) == 3
-    play_match(take_up_match(copy))
+    assert len(read_journal(copy, GameRecord).records) == 3
+    play_match(resume_match(copy))
     assert courses(copy) == straight
 
 
@@ -102,8 +106,8 @@ def test_a_match_seen_from_home(options: MatchOptions, folder: Path) -> None:
     """In every second game its players have changed sides, and the report turns it round."""
     jobs = match_jobs(options)
     assert [job.home == options.home for job in jobs] == [True, False, True, False]
-    result = play_match(take_up_match(folder))
-    records = {record.job.key: record for record in read_games(folder)}
+    result = play_match(resume_match(folder))
+    records = {record.job.key: record for record in read_journal(folder, GameRecord).records}
     for k, game in enumerate(result.games):
         record = records[str(k)]
         mine, theirs = (record.away, record.home) if k % 2 else (record.home, record.away)
@@ -122,7 +126,7 @@ def test_what_is_taken_up_must_be_what_was_asked_for(
     options: MatchOptions, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     begin_match(options, tmp_path / "run").close()
-    take_up_match(tmp_path / "run", {"seed": 5, "steps": STEPS, "disturbances": "server", "away": "hold"}).close()
+    resume_match(tmp_path / "run", {"seed": 5, "steps": STEPS, "disturbances": "server", "away": "hold"}).close()
     for name, value in {
         "seed": 4,
         "games": 7,
@@ -132,12 +136,12 @@ def test_what_is_taken_up_must_be_what_was_asked_for(
         "home": "x",
     }.items():
         with pytest.raises(ConfigurationError, match=f"has {name}"):
-            take_up_match(tmp_path / "run", {name: value})
-    with take_up_match(tmp_path / "run"), pytest.raises(ConfigurationError, match="another process"):
-        take_up_match(tmp_path / "run")
+            resume_match(tmp_path / "run", {name: value})
+    with resume_match(tmp_path / "run"), pytest.raises(ConfigurationError, match="another process"):
+        resume_match(tmp_path / "run")
     monkeypatch.setattr("airhockey.envs.versions", lambda: {"mujoco": "5.0.0"})
     with pytest.raises(ConfigurationError, match=r"but this is 5\.0\.0"):
-        take_up_match(tmp_path / "run")
+        resume_match(tmp_path / "run")
 
 
 def test_a_wrong_option_leaves_nothing_behind(options: MatchOptions, tmp_path: Path) -> None:
@@ -176,8 +180,8 @@ def test_memory_is_flat_over_a_game() -> None:
         return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE") / 1e6
 
     from airhockey.envs.disturbances import load_disturbances
-    from airhockey.evaluator.games.player import GamePlayer
-    from airhockey.evaluator.games.records import GameJob
+    from airhockey.evaluator.play.game import GamePlayer
+    from airhockey.evaluator.runs.game_records import GameJob
 
     play_one("hold", "hold", 50)
     player = GamePlayer(

@@ -8,14 +8,15 @@ from typing import Any
 import pytest
 from games import play_one
 
-from airhockey.evaluator.engines import Processes
-from airhockey.evaluator.games import watch
-from airhockey.evaluator.games.folder import read_games
-from airhockey.evaluator.games.match import MatchOptions, begin_match, play_match
-from airhockey.evaluator.games.records import GameOptions, Status
-from airhockey.evaluator.games.schedule import Entry, TournamentOptions
-from airhockey.evaluator.games.tournament import begin_tournament, play_tournament
-from airhockey.evaluator.games.watch import Watch, culprit, live_games
+from airhockey.evaluator.engines.processes import Processes
+from airhockey.evaluator.entries import Entry
+from airhockey.evaluator.match import MatchOptions, begin_match, play_match
+from airhockey.evaluator.play import watchdog as watch
+from airhockey.evaluator.play.watchdog import Watch, culprit, live_games
+from airhockey.evaluator.runs.game_records import GameOptions, GameRecord, Status
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.evaluator.schedule import TournamentOptions
+from airhockey.evaluator.tournament import begin_tournament, play_tournament
 
 Submission = Callable[..., str]
 
@@ -122,7 +123,7 @@ def test_a_player_that_kills_its_process_loses_its_games_and_nothing_else(
     options = TournamentOptions(entries=entries, game=GameOptions(steps=50))
     table = play_tournament(begin_tournament(options, tmp_path / "run"), Processes(1, attempts=1))
     assert [(row.name, row.won, row.lost, row.forfeits) for row in table.rows] == [("a", 2, 0, 0), ("killer", 0, 2, 2)]
-    failures = {(r.home.failure, r.away.failure) for r in read_games(tmp_path / "run")}
+    failures = {(r.home.failure, r.away.failure) for r in read_journal(tmp_path / "run", GameRecord).records}
     why = "the worker process died 1 times over it (signal SIGSEGV)"
     assert failures == {(None, why), (why, None)}
 

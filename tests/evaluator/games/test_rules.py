@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from games import Clock, Stander, new_game, placed, run, told
+from games import Clock, Stander, new_game, placed, run, seated, told
 
-from airhockey.evaluator.games.play import GamePlay
+from airhockey.evaluator.isolation.handle import LocalAgent
+from airhockey.evaluator.play.game import GamePlay
 
 
 @pytest.fixture
@@ -44,7 +45,7 @@ def test_a_goal_is_a_point_and_the_side_that_conceded_serves(
     assert told(game)[1:] == [("goal", scorer), ("serve", conceder)]
     assert score_and_faults(game) == (score, [0, 0])
     assert next_server(game) == conceder
-    assert [agent.serves for agent in game.agents] == [2, 2]  # both hear of it
+    assert [seat.agent.agent.serves for seat in game.seats] == [2, 2]  # both hear of it
     goal, serving = game.events[1:]
     assert goal.step == serving.step == step
     assert goal.score == tuple(score)
@@ -100,7 +101,7 @@ def test_faults_of_both_are_counted_apart(game: GamePlay) -> None:
 
 def test_the_timer_restarts_when_the_puck_changes_sides(game: GamePlay) -> None:
     observation = placed(game, -0.02, 0.3, 0.0, 1.0, 0.0, 0.0)
-    game.step(observation, 1)
+    run(game, observation, 1)
     game.env.game.timer[0] = 14.99
     assert run(game, observation, 20, 2) == 21
     assert told(game)[1:] == []
@@ -118,7 +119,7 @@ def test_a_puck_stuck_in_the_middle_is_served_again_by_the_same_side(game: GameP
 
 def test_a_slow_puck_in_the_middle_is_no_fault_however_long_it_takes(game: GamePlay) -> None:
     observation = placed(game, -0.1, 0.2, 0.0, 0.1, 0.0, 0.0)
-    game.step(observation, 1)
+    run(game, observation, 1)
     game.env.game.timer[0] = 20.0
     assert run(game, observation, 10, 2) == 11
     assert told(game)[1:] == []
@@ -164,10 +165,11 @@ def test_an_agent_over_its_20_ms_has_its_previous_position_held_with_zero_veloci
             self.count = getattr(self, "count", 0) + 1
             return self.count
 
-    game.competitors[0].agent = Mover(game.env, 0, order)
-    actions, observation = sent(game), game.begin()
-    for step in range(1, 6):
-        observation = game.step(observation, step)
+    game.seats[0].agent = LocalAgent(Mover(game.env, 0, order))
+    actions = sent(game)
+    game.begin()
+    for _ in range(5):
+        game.step()
     wanted = [np.tile(game.env.simulation.robot.start, (*shape[:-1], 1)).reshape(shape) + 1e-4 * k for k in range(1, 6)]
     held = np.zeros(shape)
     if order is None:
@@ -179,8 +181,8 @@ def test_an_agent_over_its_20_ms_has_its_previous_position_held_with_zero_veloci
     for action, expected in zip(actions, [wanted[0], wanted[1], held, held, wanted[4]], strict=True):
         assert action.tolist() == expected.tolist()
     assert [(event.step, event.who) for event in game.events if event.what == "held"] == [(3, "home"), (4, "home")]
-    assert game.end(5).home.held == 2
-    assert game.end(5).away.held == 0
+    assert game.end().home.held == 2
+    assert game.end().away.held == 0
 
 
 def test_an_agent_that_is_late_at_once_stays_where_the_serve_found_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -190,9 +192,10 @@ def test_an_agent_that_is_late_at_once_stays_where_the_serve_found_it(monkeypatc
     def think() -> None:
         clock.time += 1.0
 
-    game.competitors[0].agent = Stander(game.env, 0, think=think)
-    actions, observation = sent(game), game.begin()
-    game.step(observation, 1)
+    game.seats[0].agent = LocalAgent(Stander(game.env, 0, think=think))
+    actions = sent(game)
+    game.begin()
+    game.step()
     assert actions[0].tolist() == [list(game.env.simulation.robot.start), [0.0] * 7]
 
 
@@ -201,7 +204,8 @@ def test_preprocessors_are_applied_as_in_the_official_core(game: GamePlay) -> No
         preprocessors = [lambda observation: observation * 0.0]  # noqa: RUF012
 
     env = game.env
-    game = GamePlay(game.job, game.options, env, (Preprocessing(env, 0), Stander(env, 1)))
-    actions, observation = sent(game), game.begin()
-    game.step(observation, 1)
+    game = seated(game.options, env, Preprocessing(env, 0), Stander(env, 1))
+    actions = sent(game)
+    game.begin()
+    game.step()
     assert not actions[0].any()

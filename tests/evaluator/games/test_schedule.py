@@ -6,15 +6,8 @@ from itertools import permutations
 import pytest
 
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.games.schedule import (
-    Entry,
-    TournamentOptions,
-    check_tournament,
-    entry_of,
-    extended,
-    schedule,
-    with_replacements,
-)
+from airhockey.evaluator.entries import Entry, entry_of, with_replacements
+from airhockey.evaluator.schedule import TournamentOptions, check_tournament, extended, schedule
 
 
 def options(count: int, phases: int = 1, seed: int = 0) -> TournamentOptions:

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 
 from games import side
 
-from airhockey.evaluator.games.records import Event, GameJob, GameRecord
-from airhockey.evaluator.games.standings import Row, as_csv, standings
+from airhockey.evaluator.judging.standings import Row, as_csv, standings
+from airhockey.evaluator.runs.game_records import Event, GameJob, GameRecord
 
 Result = tuple[str, str, int, int]
 
@@ -76,6 +76,40 @@ def test_then_the_games_among_those_tied() -> None:
 
 def test_then_fewer_penalty_points() -> None:
     assert ranking("abc", a=2.0, b=1.0, c=3.0) == "bac"
+
+
+def test_goals_are_goals_and_points_by_faults_stand_apart() -> None:
+    """b wins the score board by faults alone, and ranks by it."""
+    jobs = [GameJob("1/a-b", "a", "b", "a", "b", 0)]
+    game = GameRecord(job=jobs[0], steps=1, home=side(2), away=side(1, points_by_faults=3), winner="away", events=())
+    b, a = standings(["a", "b"], jobs, [game]).rows
+    assert (b.name, b.goals, b.conceded, b.by_faults, b.points_for, b.points_against, b.difference) == (
+        "b",
+        1,
+        2,
+        3,
+        4,
+        2,
+        2,
+    )
+    assert (a.name, a.goals, a.conceded, a.by_faults, a.points_for, a.points_against, a.difference) == (
+        "a",
+        2,
+        1,
+        0,
+        2,
+        4,
+        -2,
+    )
+
+
+def test_ties_are_broken_by_the_score_board_not_by_goals() -> None:
+    games = []
+    for home, away, mine in (("a", "c", side(2)), ("b", "c", side(0, points_by_faults=3))):
+        job = GameJob(f"1/{home}-{away}", home, away, home, away, 0)
+        games.append(GameRecord(job=job, steps=1, home=mine, away=side(), winner="home", events=()))
+    rows = standings(["a", "b", "c"], [game.job for game in games], games).rows
+    assert [row.name for row in rows] == ["b", "a", "c"]
 
 
 def test_then_the_name() -> None:

@@ -16,13 +16,14 @@ import pytest
 from games import course
 
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.cluster import Cluster
-from airhockey.evaluator.engines import Processes
-from airhockey.evaluator.games.folder import read_games
-from airhockey.evaluator.games.records import GameOptions
-from airhockey.evaluator.games.schedule import Entry, TournamentOptions
-from airhockey.evaluator.games.standings import Standings
-from airhockey.evaluator.games.tournament import begin_tournament, play_tournament, read_standings, take_up_tournament
+from airhockey.evaluator.engines.cluster import Cluster
+from airhockey.evaluator.engines.processes import Processes
+from airhockey.evaluator.entries import Entry
+from airhockey.evaluator.judging.standings import Standings
+from airhockey.evaluator.runs.game_records import GameOptions, GameRecord
+from airhockey.evaluator.runs.journal import read_journal
+from airhockey.evaluator.schedule import TournamentOptions
+from airhockey.evaluator.tournament import begin_tournament, play_tournament, read_standings, resume_tournament
 from submissions import make_submission
 
 STEPS = 300
@@ -60,7 +61,7 @@ def outcome(folder: Path) -> Any:
     """Standings, as computed from the folder and as left in it, and every game's course."""
     table = read_standings(folder)[1]
     assert msgspec.json.decode((folder / "standings.json").read_bytes(), type=Standings) == table
-    return table, {record.job.key: course(record) for record in read_games(folder)}
+    return table, {record.job.key: course(record) for record in read_journal(folder, GameRecord).records}
 
 
 def typed(entries: tuple[Entry, ...]) -> list[str]:
@@ -71,7 +72,7 @@ def killed_after(count: int, folder: Path, command: list[str]) -> None:
     """Run a command and kill it, without a word, once the folder holds so many games."""
     with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
         end = time.monotonic() + 60.0
-        while len(read_games(folder)) < count:
+        while len(read_journal(folder, GameRecord).records) < count:
             assert process.poll() is None and time.monotonic() < end
             time.sleep(0.01)
         process.kill()
@@ -82,14 +83,14 @@ def test_killed_twice_resumed_and_extended(entries: tuple[Entry, ...], straight:
     out = ["--out", str(folder)]
     begin = [*HOCKEY, *typed(entries[:4]), "--steps", str(STEPS), "--seed", "2", "--isolate", "none", *out]
     killed_after(2, folder, begin)
-    killed_after(len(read_games(folder)) + 2, folder, [*HOCKEY, "--resume", *out])
-    assert len(read_games(folder)) < 12
-    before = {record.job.key: record for record in read_games(folder)}
+    killed_after(len(read_journal(folder, GameRecord).records) + 2, folder, [*HOCKEY, "--resume", *out])
+    assert len(read_journal(folder, GameRecord).records) < 12
+    before = {record.job.key: record for record in read_journal(folder, GameRecord).records}
     done = subprocess.run([*HOCKEY, "--resume", *out, "--json", *typed(entries[4:])], check=False, capture_output=True)
     assert done.returncode == 3  # an entry failed games
     assert outcome(folder) == straight
     assert msgspec.json.decode(done.stdout, type=Standings) == straight[0]
-    after = {record.job.key: record for record in read_games(folder)}
+    after = {record.job.key: record for record in read_journal(folder, GameRecord).records}
     assert len(after) == 20
     assert {key: after[key] for key in before} == before  # only the missing games were played
 
@@ -100,7 +101,7 @@ def test_on_dask_with_a_worker_killed(entries: tuple[Entry, ...], straight: Any,
 
     def kill_a_worker(*_: Any) -> None:
         """After the second game: with two workers, at least one of them is in the middle of another."""
-        if len(read_games(tmp_path / "run")) == 2:
+        if len(read_journal(tmp_path / "run", GameRecord).records) == 2:
             victim = sorted(descendants(os.getpid()))[-1]
             os.kill(victim, signal.SIGKILL)
             killed.append(victim)
@@ -142,13 +143,13 @@ def test_a_second_phase_with_a_replacement_after_the_first_is_played(tmp_path: P
     options = TournamentOptions(entries=entries, game=GameOptions(steps=20))
     first = play_tournament(begin_tournament(options, tmp_path / "run"))
     assert [(row.name, row.points) for row in first.rows] == [("a", 6), ("b", 0)]
-    folder = take_up_tournament(tmp_path / "run", phases=2, replacements={"b": "hold"})
+    folder = resume_tournament(tmp_path / "run", phases=2, replacements={"b": "hold"})
     second = play_tournament(folder)
     assert [(row.name, row.points, row.forfeits) for row in second.rows] == [("a", 8, 0), ("b", 2, 2)]
     with pytest.raises(ConfigurationError, match="'b' has played games of phase 2"):
-        take_up_tournament(tmp_path / "run", replacements={"b": "thesis"})
+        resume_tournament(tmp_path / "run", replacements={"b": "thesis"})
     with pytest.raises(ConfigurationError, match="cannot be made 1"):
-        take_up_tournament(tmp_path / "run", phases=1)
+        resume_tournament(tmp_path / "run", phases=1)
     assert read_standings(tmp_path / "run")[1] == second  # and the refusals changed nothing
 
 
@@ -159,13 +160,13 @@ def test_an_extension_that_is_wrong_changes_nothing(tmp_path: Path) -> None:
     before = (tmp_path / "run" / "tournament.json").read_bytes()
     for wrong in (Entry(name="a", agent="thesis"), Entry(name="c", agent="nobody"), Entry(name="c-d", agent="hold")):
         with pytest.raises(ConfigurationError):
-            take_up_tournament(tmp_path / "run", [wrong])
+            resume_tournament(tmp_path / "run", [wrong])
     with pytest.raises(ConfigurationError, match="has steps 20, not 30"):
-        take_up_tournament(tmp_path / "run", (), {"steps": 30})
+        resume_tournament(tmp_path / "run", (), {"steps": 30})
     with pytest.raises(ConfigurationError, match="has no tournament"):
-        take_up_tournament(tmp_path)
+        resume_tournament(tmp_path)
     assert (tmp_path / "run" / "tournament.json").read_bytes() == before
-    with take_up_tournament(tmp_path / "run", entries) as folder:  # the same again is no extension
+    with resume_tournament(tmp_path / "run", entries) as folder:  # the same again is no extension
         assert folder.manifest.options == options
 
 

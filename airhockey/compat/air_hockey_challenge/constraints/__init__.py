@@ -1,19 +1,4 @@
 """Constraints as functions of the joints."""
 
-from .constraints import (
-    Constraint,
-    ConstraintList,
-    EndEffectorConstraint,
-    JointPositionConstraint,
-    JointVelocityConstraint,
-    LinkConstraint,
-)
-
-__all__ = [
-    "Constraint",
-    "ConstraintList",
-    "EndEffectorConstraint",
-    "JointPositionConstraint",
-    "JointVelocityConstraint",
-    "LinkConstraint",
-]
+from .constraints import *  # noqa: F403 - as the official package does
+from .constraints import __all__ as __all__

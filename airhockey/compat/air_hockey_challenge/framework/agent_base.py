@@ -5,14 +5,17 @@ from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
-import torch
-from mushroom_rl.core import Agent, MDPInfo, Serializable
-from mushroom_rl.utils.spaces import Box
+from mushroom_rl.core import Agent
 from numpy.typing import NDArray
+
+from airhockey.compat import bridges
+from airhockey.compat.rl_info import mdp_info
 
 from ..utils.kinematics import forward_kinematics
 
 Array = NDArray[np.float64]
+
+bridges.install()  # saved agents hold whole objects, which torch refuses by default since 2.6
 
 
 class AgentBase(Agent):
@@ -34,7 +37,7 @@ class AgentBase(Agent):
         """An episode begins."""
         raise NotImplementedError
 
-    def draw_action(self, observation: Array) -> Array:
+    def draw_action(self, observation: Array) -> Any:
         """The next command."""
         raise NotImplementedError
 
@@ -83,20 +86,3 @@ class AgentBase(Agent):
         self.env_info, self.agent_id = env_info, agent_id
         self.robot_model = copy.deepcopy(env_info["robot"]["robot_model"])
         self.robot_data = copy.deepcopy(env_info["robot"]["robot_data"])
-
-
-def mdp_info(info: Any) -> Any:
-    """Spaces and horizon as MushroomRL's `MDPInfo`."""
-    if isinstance(info, MDPInfo):
-        return info
-    seen, done = info.observation_space, info.action_space
-    return MDPInfo(Box(seen.low, seen.high), Box(done.low, done.high), info.gamma, info.horizon, info.dt)
-
-
-def _load_torch(zip_file: Any, name: str) -> Any:
-    """Saved agents hold whole objects, which torch refuses by default since 2.6. Here they are the submission's own."""
-    with zip_file.open(name, "r") as file:
-        return torch.load(file, weights_only=False)
-
-
-Serializable._load_torch = staticmethod(_load_torch)

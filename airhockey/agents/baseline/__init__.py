@@ -1,1 +1,0 @@
-"""The planning player `baseline`: it predicts, chooses a skill, plans and tracks."""

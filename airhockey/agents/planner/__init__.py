@@ -1,0 +1,1 @@
+"""The player `planner`: it predicts, chooses a skill, plans and tracks."""

@@ -1,0 +1,1 @@
+"""What happens when a mallet meets a puck, and where it can."""

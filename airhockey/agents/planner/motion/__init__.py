@@ -1,0 +1,1 @@
+"""Motions of the mallet: towards a place, round the puck, through it."""

@@ -1,0 +1,6 @@
+"""The planar robot's base environments, moved by torques."""
+
+from .defend import AirHockeyDefend
+from .hit import AirHockeyHit
+
+__all__ = ["AirHockeyDefend", "AirHockeyHit"]

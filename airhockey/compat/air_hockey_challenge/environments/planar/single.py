@@ -1,0 +1,7 @@
+"""One planar robot."""
+
+from .base import AirHockeyBase
+
+
+class AirHockeySingle(AirHockeyBase):
+    """One planar robot."""

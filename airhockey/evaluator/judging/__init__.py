@@ -1,0 +1,1 @@
+"""The judge: points, classes, winners and standings from records alone."""

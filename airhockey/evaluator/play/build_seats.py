@@ -1,0 +1,127 @@
+"""Agents take their seats at an environment, in the interpolation orders that were asked for or that they want."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from airhockey.errors import ConfigurationError
+from airhockey.evaluator.isolation.failures import agent_failures
+from airhockey.evaluator.isolation.handle import AgentHandle
+from airhockey.evaluator.isolation.limits import Limits
+from airhockey.evaluator.play.seat import Care, Seat
+from airhockey.evaluator.play.seeding import seed_global_generators
+from airhockey.evaluator.runs.game_records import SIDES
+from airhockey.evaluator.runs.records import Order
+
+Orders = tuple[int | None, ...]
+
+
+@dataclass(frozen=True)
+class Entrant:
+    """Who is to take a seat.
+
+    Attributes:
+        agent: A name of the registry, the path of a submission, or tcp://HOST:PORT.
+        order: The interpolation order asked for.
+        isolate: Where it is to live; "auto" is here for our own agents, elsewhere for submissions.
+        limits: What it may use there, and how long anybody waits.
+        parameters: Of the rule-based player.
+        seed: Of the generators of a process of its own, while it is built.
+        python: Another interpreter for its process.
+    """
+
+    agent: str
+    order: Order = "agent"
+    isolate: str = "none"
+    limits: Limits = field(default_factory=Limits)
+    parameters: str | None = None
+    seed: np.random.SeedSequence | None = None
+    python: str | None = None
+
+    @property
+    def first_order(self) -> int | None:
+        """The order asked for, or the one that a submission's files name; 3, the usual one, for everybody else."""
+        from airhockey.agents.submission import is_submission, wanted_order
+
+        if self.order != "agent":
+            return self.order if isinstance(self.order, int) else None
+        try:
+            return wanted_order(Path(self.agent)) if is_submission(self.agent) else 3
+        except ConfigurationError:
+            return 3  # the builder will say the same
+
+    def build(self, env: Any, agent_id: int) -> AgentHandle:
+        """The agent, made for this environment. Raises what its code raises."""
+        from airhockey.agents import AGENTS
+        from airhockey.evaluator.isolation.build import build_agent
+        from airhockey.evaluator.isolation.modes import choose
+
+        kwargs: dict[str, Any] = {}
+        if self.order != "agent" and self.agent in AGENTS:
+            # Our own agents can play any order; a submission's order is a matter of its agent_config.yml.
+            kwargs["interpolation_order"] = env.formats[agent_id - 1].order
+        if self.parameters is not None:
+            kwargs["parameters"] = self.parameters
+        mode = choose(self.agent, None if self.isolate == "auto" else self.isolate).mode
+        return build_agent(
+            self.agent, env, agent_id, mode=mode, limits=self.limits, seed=self.seed, python=self.python, **kwargs
+        )
+
+
+def build_seats(
+    make: Callable[[Orders], Any], entrants: Sequence[Entrant], care: Care, seed: np.random.SeedSequence | None = None
+) -> tuple[Any, tuple[Seat, ...]]:
+    """An environment, and everybody's seat at it; who could not be built has failed.
+
+    Args:
+        make: Makes the environment from the interpolation order of each player.
+        entrants: Who plays.
+        care: How they are taken care of.
+        seed: Of the generators that agents in this process share, while they are built.
+    """
+
+    def build(orders: Orders) -> tuple[Any, tuple[Seat, ...]]:
+        env = make(orders)
+        if seed is not None:
+            seed_global_generators(seed)
+        return env, tuple(_seat(entrant, env, k, care) for k, entrant in enumerate(entrants))
+
+    orders = tuple(entrant.first_order for entrant in entrants)
+    env, seats = build(orders)
+    if any(seat.agent is None for seat in seats):
+        return env, seats
+    wanted = tuple(
+        seat.agent.interpolation_order if entrant.order == "agent" and seat.agent is not None else order
+        for seat, entrant, order in zip(seats, entrants, orders, strict=True)
+    )
+    if wanted == orders or not _all_there(seats, wanted):
+        return env, seats
+    for seat in seats:
+        seat.stop()
+    return build(wanted)
+
+
+def _seat(entrant: Entrant, env: Any, k: int, care: Care) -> Seat:
+    try:
+        with care.watch.over(SIDES[k]):
+            agent = entrant.build(env, k + 1)
+    except agent_failures() as failure:
+        seat = Seat(None, env.formats[k], care, SIDES[k])
+        seat.fail_to_build(failure)
+        return seat
+    return Seat(agent, env.formats[k], care, SIDES[k])
+
+
+def _all_there(seats: Sequence[Seat], orders: Orders) -> bool:
+    """Whether these are orders; a seat whose agent wants another one has failed."""
+    from airhockey.envs.actions import ActionFormat
+
+    for seat, order in zip(seats, orders, strict=True):
+        try:
+            ActionFormat(order, 1)
+        except ConfigurationError as error:
+            seat.fail_to_build(error)
+    return all(seat.failure is None for seat in seats)

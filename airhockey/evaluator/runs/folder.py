@@ -1,0 +1,176 @@
+"""A run's folder: begun empty, taken up again as the same run, written by one process at a time, killed at any moment.
+
+    run.json, match.json …    the manifest
+    journal.jsonl             a line per finished piece of work
+    result.json               once everything is done
+
+Each kind of run says in a class of its own what it is called, and what else lies in its folder.
+"""
+
+import contextlib
+import os
+from collections.abc import Hashable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, ClassVar, Generic, Self, TypeVar
+
+import msgspec
+
+from airhockey import envs
+from airhockey.envs.disturbances import load_disturbances
+from airhockey.evaluator.runs import journal
+from airhockey.evaluator.runs.disk import begin_folder, disk_errors, lock_folder, write_record
+from airhockey.evaluator.runs.journal import Record
+from airhockey.evaluator.runs.manifest import (
+    Manifest,
+    check_same_run,
+    check_versions,
+    now,
+    option_of,
+    read_manifest,
+)
+
+Options = TypeVar("Options")
+
+
+class RunFolder(Generic[Options, Record]):
+    """A run's folder, opened for writing.
+
+    Attributes:
+        name: The manifest's file name.
+        options_type, record_type: What the options and the journal's lines are.
+        manifest_type: `Manifest`, or a kind of it.
+        path: The folder.
+        manifest: What the run is.
+        records: Of the finished work.
+    """
+
+    name: ClassVar[str]
+    options_type: ClassVar[type]
+    record_type: ClassVar[type]
+    manifest_type: ClassVar[Any] = Manifest
+    manifest: Manifest[Options]
+
+    def __init__(self, path: Path, asked: Mapping[str, Any] | None = None) -> None:
+        """Use `begin`, `resume` or `open`."""
+        self.path = path
+        self._lock = lock_folder(path)
+        with self.released_on_error():
+            self.manifest = self.read(path)
+            if asked is not None:
+                check_same_run(path, self.manifest, asked)
+                check_versions(path, self.manifest.versions, self.versions())
+            with disk_errors(path):
+                self.records: list[Record] = self.recover()
+
+    @classmethod
+    def begin(cls, options: Options, path: Path, **more: Any) -> Self:
+        """Begin a run in a folder that does not exist or is empty; nothing is written when anything about it is wrong.
+
+        Args:
+            options: What is asked for.
+            path: The folder.
+            **more: Fields that only this kind of manifest has.
+
+        Raises:
+            ConfigurationError: An option has no meaning, or the folder holds something or cannot be written.
+        """
+        cls.check(options)
+        return cls.create(
+            path,
+            cls.manifest_type(
+                options=options,
+                profile=load_disturbances(option_of(options, "disturbances")),
+                versions=cls.versions(),
+                created=now(),
+                **more,
+            ),
+        )
+
+    @classmethod
+    def resume(cls, path: Path, asked: Mapping[str, Any] | None = None) -> Self:
+        """Take up a run that was interrupted.
+
+        Args:
+            path: Its folder.
+            asked: Options that the user repeated, by name; they must be the run's.
+
+        Raises:
+            ConfigurationError: There is no run, it is another than the one asked for, the software is, or another process
+                is at work on it.
+        """
+        cls.read(path)
+        return cls(path, asked or {})
+
+    @classmethod
+    def create(cls, path: Path, manifest: Manifest[Options]) -> Self:
+        """Begin what a manifest says; raises `ConfigurationError`."""
+        begin_folder(path, cls.name, manifest)
+        return cls(path)
+
+    @classmethod
+    def open(cls, path: Path) -> Self:
+        """Take up a run whatever it is; raises `ConfigurationError`."""
+        cls.read(path)
+        return cls(path)
+
+    @classmethod
+    def read(cls, path: Path) -> Manifest[Options]:
+        """The manifest in a folder, see `read_manifest`."""
+        return read_manifest(path, cls.name, cls.options_type, cls.manifest_type)
+
+    @classmethod
+    def check(cls, options: Options) -> None:
+        """Find the mistakes in a run's options; raises `ConfigurationError`."""
+
+    @classmethod
+    def versions(cls) -> dict[str, str]:
+        """Of the software that results depend on."""
+        return envs.versions()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let others have it."""
+        os.close(self._lock)
+
+    @contextlib.contextmanager
+    def released_on_error(self) -> Iterator[None]:
+        """Let others have it if the block fails."""
+        try:
+            yield
+        except BaseException:
+            self.close()
+            raise
+
+    @property
+    def done(self) -> set[Hashable]:
+        """Keys of the work that need not be done again."""
+        return {record.key for record in self.records}
+
+    def recover(self) -> list[Record]:
+        """The records of the finished work; what a kill left half done goes away."""
+        records: list[Record] = journal.read_journal(self.path, self.record_type).records
+        journal.mend(self.path, records)
+        return records
+
+    def keep(self, *records: Record) -> None:
+        """Keep records; they are on the disk when this returns, and what they tell of is finished."""
+        with disk_errors(self.path):
+            journal.append(self.path, records)
+        self.records += records
+
+    def change(self, options: Options) -> None:
+        """Replace the options of a run that may be extended."""
+        manifest = msgspec.structs.replace(self.manifest, options=options)
+        with disk_errors(self.path):
+            write_record(self.path / self.name, manifest)
+        self.manifest = manifest
+
+    def keep_result(self, result: msgspec.Struct) -> None:
+        """Leave the result beside what it was computed from."""
+        with disk_errors(self.path):
+            write_record(self.path / "result.json", result)

@@ -1,0 +1,160 @@
+"""What a run is asked to do and what it leaves behind, as typed records that travel as JSON."""
+
+from typing import Literal
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+Trajectory = dict[str, NDArray[np.float64]]
+"""One episode's arrays by name; `airhockey.evaluator.play.episode.Recorder.trajectory` says which."""
+
+Order = int | Literal["agent", "none"]
+"""An interpolation order; "agent" leaves the choice to the agent, "none" means that an action is the 20 set-points."""
+
+
+class Options(msgspec.Struct, frozen=True, kw_only=True):
+    """Everything that a run's result depends on, besides the versions of the software.
+
+    Attributes:
+        environments: Names of the tasks' environments, played one after the other.
+        agent: A name of the registry or the absolute path of a submission folder.
+        episodes: Number of episodes of each task.
+        seed: From it, the task and the episode's index come the seeds of every episode.
+        disturbances: Name of a profile or absolute path of a YAML file.
+        interpolation_order: See `Order`.
+        clock: What the time of `draw_action` is measured with.
+        edition: Rule edition.
+        isolate: Where the agent lives: with the evaluator, in a process of its own, or in a sandbox.
+        patience: Longest time for an answer of an agent that lives elsewhere, in [s].
+        real_time: Pace of the steps relative to the robot's, for agents that think beside them; 0: as fast as possible.
+        python: Absolute path of another interpreter for the agent's process; None for the evaluator's own.
+        parameters: Of the rule-based player: a name that it knows or the absolute path of a YAML file; None for its own.
+    """
+
+    environments: tuple[str, ...]
+    agent: str = "planner"
+    episodes: int = 1000
+    seed: int = 0
+    disturbances: str = "ideal"
+    interpolation_order: Order = "agent"
+    clock: Literal["wall", "cpu"] = "cpu"
+    edition: str = "2023"
+    isolate: Literal["none", "process", "sandbox"] = "none"
+    patience: float = 60.0
+    real_time: float = 0.0
+    python: str | None = None
+    parameters: str | None = None
+
+
+class Job(msgspec.Struct, frozen=True):
+    """One episode to play: the environment's name and the episode's index in its task."""
+
+    env: str
+    index: int
+
+
+class StepTime(msgspec.Struct, frozen=True, kw_only=True):
+    """Time that `draw_action` took in one episode, in [s]."""
+
+    mean: float = 0.0
+    max: float = 0.0
+
+
+class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
+    """One line of the journal.
+
+    Attributes:
+        env: Name of the environment.
+        index: Index of the episode in its task.
+        success: What the task says about the last step; False where the agent failed.
+        steps: Control steps played.
+        absorbing: Whether the task ended the episode; False at the horizon and where the agent failed.
+        violations: Constraint name -> number of steps that violated it.
+        computation_time: Of `draw_action`.
+        error: Why the agent failed the episode; None where it did not.
+    """
+
+    env: str
+    index: int
+    success: bool = False
+    steps: int = 0
+    absorbing: bool = False
+    violations: dict[str, int] = {}
+    computation_time: StepTime = StepTime()
+    error: str | None = None
+
+    @property
+    def job(self) -> Job:
+        """The job that this record answers."""
+        return Job(self.env, self.index)
+
+    @property
+    def key(self) -> Job:
+        """Names the episode in its run."""
+        return self.job
+
+
+class Episode(msgspec.Struct, frozen=True):
+    """A played episode: what the journal gets and what the trajectory file gets."""
+
+    record: EpisodeRecord
+    trajectory: Trajectory
+
+
+class RunTime(msgspec.Struct, frozen=True, kw_only=True):
+    """Time that `draw_action` took over a whole task, in [s]."""
+
+    mean: float
+    p99: float
+    max: float
+
+
+class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
+    """The result of one task; its JSON is what `hockey evaluate --json` prints.
+
+    Attributes:
+        success: Share of episodes, 0 … 1.
+        penalty: Penalty points, summed over the episodes.
+        violations: Constraint name -> number of episodes that violated it.
+        late: Number of episodes that cost points for computation time.
+        agent_errors: Number of episodes that the agent failed.
+    """
+
+    env: str
+    agent: str
+    episodes: int
+    seed: int
+    disturbances: str
+    success: float
+    penalty: float
+    deployability: str
+    violations: dict[str, int]
+    late: int
+    computation_time: RunTime
+    agent_errors: int
+
+    @property
+    def tasks(self) -> "tuple[TaskResult, ...]":
+        """The results of the single tasks: this one."""
+        return (self,)
+
+
+class RunResult(msgspec.Struct, frozen=True, kw_only=True):
+    """The results of several tasks, and of the whole where every task of a phase was played.
+
+    Attributes:
+        deployability: The worst task's class.
+        phase: "phase-1" (3dof) or "phase-2" (7dof); None unless every task of it was played.
+        score: Weighted success of the phase's tasks, 0 … 1.
+    """
+
+    results: tuple[TaskResult, ...]
+    deployability: str
+    phase: str | None
+    score: float | None
+
+    @property
+    def tasks(self) -> tuple[TaskResult, ...]:
+        """The results of the single tasks."""
+        return self.results

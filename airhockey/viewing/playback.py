@@ -1,0 +1,143 @@
+"""A show: something that goes on step by step on a stage, episode after episode, live or from a recording."""
+
+from collections.abc import Sequence
+from functools import cache
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from airhockey.envs.specs import TABLE
+from airhockey.viewing.caption import Caption
+from airhockey.viewing.library import Entry
+from airhockey.viewing.marks import PREDICTED, Mark, path
+from airhockey.viewing.recording import Recording
+from airhockey.viewing.scene_view import Stage
+from airhockey.viewing.video import trail
+
+Array = NDArray[np.float64]
+PREDICTED_SECONDS = 0.8
+"""How far ahead the puck's path is drawn."""
+_STILL = 0.05  # [m/s]
+
+
+class Show(Protocol):
+    """What a viewer needs of what it shows.
+
+    Attributes:
+        stage: Where it is shown; another one may come with another episode.
+        step, steps: Control steps shown so far and of the whole episode, as far as that is known.
+        episode: Position of the present episode.
+        can_go_back: Whether `seek` works.
+    """
+
+    stage: Stage
+    step: int
+    steps: int
+    episode: int
+    can_go_back: bool
+
+    @property
+    def episodes(self) -> int | None:
+        """How many there are; None for as many as one likes."""
+
+    def begin(self, episode: int) -> None:
+        """Begin an episode, from its start."""
+
+    def advance(self) -> bool:
+        """One control step; False where the episode is over."""
+
+    def seek(self, step: int) -> None:
+        """Show another step, where `can_go_back`."""
+
+    def caption(self) -> Caption:
+        """How things stand."""
+
+    def marks(self) -> list[Mark]:
+        """What is to be drawn into the scene."""
+
+    def close(self) -> None:
+        """Let go of everything: it is over."""
+
+
+class RecordedShow:
+    """Recordings, one after the other.
+
+    Args:
+        entries: What there is.
+        episode: Position of the one to begin with.
+    """
+
+    can_go_back = True
+
+    def __init__(self, entries: Sequence[Entry], episode: int = 0) -> None:
+        self._entries = list(entries)
+        self._stages: dict[str, Stage] = {}
+        self.begin(episode)
+
+    @property
+    def episodes(self) -> int | None:
+        """See `Show`."""
+        return len(self._entries)
+
+    def begin(self, episode: int) -> None:
+        """See `Show`."""
+        self.episode = episode % len(self._entries)
+        self._recording: Recording = self._entries[self.episode].load()
+        env = self._recording.env
+        if env not in self._stages:
+            self._stages[env] = Stage(env)
+        self.stage, self.steps = self._stages[env], self._recording.steps
+        self.seek(0)
+
+    def advance(self) -> bool:
+        """See `Show`."""
+        if self.step >= self.steps:
+            return False
+        self.seek(self.step + 1)
+        return True
+
+    def seek(self, step: int) -> None:
+        """See `Show`."""
+        self.step = min(max(step, 0), self.steps)
+        row = self._recording.row(self.step)
+        self.stage.show(self._recording.puck[row], self._recording.joints[row])
+
+    def caption(self) -> Caption:
+        """See `Show`."""
+        return self._recording.narrator.caption(self.step)
+
+    def marks(self) -> list[Mark]:
+        """See `Show`."""
+        row = self._recording.row(self.step)
+        puck, velocity = self._recording.puck[row], self._recording.puck_velocity[row]
+        return trail(self._recording, row) + predicted_path(puck, velocity)
+
+    def close(self) -> None:
+        """Nothing is held."""
+
+
+def predicted_path(puck: Array, velocity: Array) -> list[Mark]:
+    """Where the puck will slide and bounce if nobody touches it, by the agents' model of its motion.
+
+    Args:
+        puck: x, y, yaw in the world. Shape (3,).
+        velocity: Its derivative. Shape (3,).
+    """
+    if np.hypot(velocity[0], velocity[1]) < _STILL:
+        return []
+    from airhockey.agents.estimation.kalman import PuckEstimate
+
+    state = np.array([puck[0], puck[1], velocity[0], velocity[1], velocity[2]], dtype=np.float64)
+    states = _predictor().path(PuckEstimate(state, np.eye(5) * 1e-9, 0), PREDICTED_SECONDS)
+    points = np.asarray(states[::4, :2])
+    gone = np.flatnonzero(np.abs(points[:, 0]) > TABLE.length / 2)  # into a goal, where it is over
+    return path(points[: gone[0] + 1] if len(gone) else points, PREDICTED)
+
+
+@cache
+def _predictor() -> Any:
+    """Made when it is first needed: it compiles."""
+    from airhockey.agents.estimation.prediction import PuckPredictor
+
+    return PuckPredictor()

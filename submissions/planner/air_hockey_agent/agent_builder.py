@@ -1,0 +1,8 @@
+"""Our `planner` as a submission: it also runs in the official evaluator, given `pip install airhockey` there."""
+
+from airhockey.agents import build_agent as build
+
+
+def build_agent(env_info, **kwargs):
+    """What an evaluator calls; `kwargs` are keys of `agent_config.yml`, and `agent_id` in a tournament."""
+    return build("planner", env_info, **kwargs)

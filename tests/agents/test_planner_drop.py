@@ -1,0 +1,93 @@
+"""The drop: the puck dies where it should; and the evidence that calls for it."""
+
+import numpy as np
+import pytest
+
+from airhockey.agents.control.workspace import Workspace
+from airhockey.agents.estimation.motion import advance, puck_motion
+from airhockey.agents.planner.estimation.rest_prediction import RestPrediction
+from airhockey.agents.planner.estimation.shot_statistics import FLIGHT, PATIENCE, ShotStatistics
+from airhockey.agents.planner.shots.parameters import smash_parameters
+from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
+from airhockey.agents.planner.skills.dead_puck import GAIN, PLACE, roll
+from airhockey.agents.table import CONTACT, to_robot
+from airhockey.envs.specs import IIWA
+
+TIP = np.array([-0.86, 0.0])
+DT = 0.02
+
+
+@pytest.fixture(scope="module")
+def model() -> ShotModel:
+    workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0)
+    return make_shot_model(smash_parameters(IIWA), workspace)._replace(turn=0.0)
+
+
+@pytest.mark.parametrize("puck", [(-0.6, 0.0), (-0.55, 0.2), (-0.4, -0.3), (-0.65, -0.1)])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_puck_comes_to_rest_at_the_place(puck: tuple[float, float], side: float, model: ShotModel) -> None:
+    place = PLACE * np.array([1.0, side])
+    shot = roll(np.array([*puck, 0.0, 0.0, 0.0]), 2.0, place, GAIN, TIP, 0.0, model)
+    assert shot.value == 1.0 and shot.wall == side
+    assert np.hypot(*(shot.mallet - puck)) == pytest.approx(CONTACT)
+    state = np.array([*puck, *(GAIN * shot.speed * shot.normal), 0.0])
+    advance(state, 30.0, puck_motion().constants)
+    assert state[:2] == pytest.approx(place, abs=1e-3)
+
+
+def test_a_drop_needs_time_to_get_behind_the_puck(model: ShotModel) -> None:
+    puck = np.array([-0.6, 0.0, 0.0, 0.0, 0.0])
+    assert roll(puck, 0.1, PLACE, GAIN, TIP, 0.0, model).value == 0.0
+
+
+def test_a_puck_beyond_reach_cannot_be_dropped(model: ShotModel) -> None:
+    assert roll(np.array([0.1, 0.0, 0.0, 0.0, 0.0]), 2.0, PLACE, GAIN, TIP, 0.0, model).value == 0.0
+
+
+def pass_time(record: ShotStatistics, seconds: float) -> None:
+    for _ in range(round(seconds / DT)):
+        record.wait(DT)
+
+
+def test_shots_that_come_back_are_futile_in_the_end() -> None:
+    record = ShotStatistics()
+    for k in range(PATIENCE):
+        assert not record.futile, k
+        record.struck()
+        pass_time(record, FLIGHT + 0.1)
+    assert record.futile and record.failed == PATIENCE
+
+
+def test_a_serve_soon_after_a_shot_is_a_goal_and_gives_new_courage() -> None:
+    record = ShotStatistics()
+    for _ in range(PATIENCE):
+        record.struck()
+        pass_time(record, FLIGHT + 0.1)
+    record.struck()
+    pass_time(record, 1.5)
+    record.serve()
+    assert record.scored == 1 and not record.futile
+
+
+def test_a_serve_without_a_shot_says_nothing() -> None:
+    record = ShotStatistics()
+    record.serve()
+    record.struck()
+    pass_time(record, FLIGHT + 0.1)
+    record.serve()
+    assert (record.scored, record.failed) == (0, 1)
+
+
+@pytest.mark.parametrize("damping", [0.4, 0.5, 0.6])
+@pytest.mark.parametrize("place", [0.7, 0.9, 1.2])
+def test_the_watch_tells_where_a_puck_will_rest_whatever_its_damping(damping: float, place: float) -> None:
+    watch, told = RestPrediction(DT), []
+    for k in range(300):
+        told.append(watch.see(place - (place + 0.55) * np.exp(-damping * k * DT)))
+    (rest,) = [answer for answer in told if answer is not None]
+    assert rest == pytest.approx(place, abs=0.01)
+
+
+def test_the_watch_tells_nothing_of_a_puck_that_is_stopped() -> None:
+    watch = RestPrediction(DT)
+    assert all(watch.see(min(-0.55 + 0.01 * k, 0.3)) is None for k in range(300))

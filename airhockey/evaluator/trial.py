@@ -9,10 +9,8 @@ import numpy as np
 
 from airhockey import envs
 from airhockey.errors import ActionError, AirHockeyError
-from airhockey.evaluator.isolation.agent_client import IsolatedAgent
 from airhockey.evaluator.isolation.failures import AgentDied, AgentTimeout, describe
 from airhockey.evaluator.isolation.limits import Limits
-from airhockey.evaluator.isolation.modes import Mode
 from airhockey.evaluator.pacing import PAUSE
 from airhockey.evaluator.play.build_seats import Entrant, build_seats
 from airhockey.evaluator.play.game import TIME_LIMIT
@@ -58,11 +56,9 @@ class Trial(msgspec.Struct, frozen=True):
     thinking: float = 0.0
 
 
-def try_out(
-    agent: str, task: str, mode: Mode, limits: Limits, steps: int, side: int = 1, python: str | None = None
-) -> Trial | Problem:
+def try_out(mine: Entrant, task: str, steps: int, side: int = 1) -> Trial | Problem:
     """Play a few steps of one task, alone or against somebody who stands still."""
-    mine = Entrant(agent, isolate=mode, limits=limits, python=python)
+    limits = mine.limits
     entrants = [mine] if task != GAME else [mine, Entrant("hold")] if side == 1 else [Entrant("hold"), mine]
     began = time.perf_counter()
     env, seats = build_seats(functools.partial(envs.make, task), entrants, Care())
@@ -107,8 +103,6 @@ class _Watched:
 
     def pause(self) -> float:
         """Wait a little; gives the CPU time that the agent used meanwhile, in [s], where it can be told from the evaluator."""
-        if not isinstance(self._agent, IsolatedAgent):
-            return 0.0
         return self._agent.thinks_for(PAUSE)
 
 

@@ -16,6 +16,7 @@ from airhockey.errors import ConfigurationError, unknown
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.modes import Mode
 from airhockey.evaluator.pacing import BUSY
+from airhockey.evaluator.play.build_seats import Entrant
 from airhockey.evaluator.trial import GAME, Problem, Trial, slow, try_out
 
 _OFFICIAL_NAMES = {
@@ -82,7 +83,8 @@ def validate(path: Path, mode: Mode, limits: Limits, steps: int = 50, python: st
             )
         sides = [(task, 1) for task in tasks] + [(task, 2) for task in tasks if task == GAME]
         for task, side in sides:
-            outcome = try_out(str(path.resolve()), task, mode, limits, steps, side, python)
+            entrant = Entrant(str(path.resolve()), isolate=mode, limits=limits, python=python)
+            outcome = try_out(entrant, task, steps, side)
             if isinstance(outcome, Trial):
                 trials.append(outcome)
                 problems += slow(outcome)

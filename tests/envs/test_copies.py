@@ -180,6 +180,8 @@ def test_what_was_set_on_an_environment_goes_with_it():
     robot = twin.env_info["robot"]
     assert robot["robot_model"] is twin.simulation.robot_model and robot["robot_data"] is twin.simulation.robot_data
     assert robot["robot_data"] is not env.env_info["robot"]["robot_data"]
+    for constraint in twin.env_info["constraints"].constraints.values():
+        assert constraint._env_info is twin.env_info
     assert list(twin.env_info) == list(env.env_info) and list(robot) == list(env.env_info["robot"])
 
 

@@ -119,7 +119,6 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
         success: Share of episodes, 0 … 1.
         penalty: Penalty points, summed over the episodes.
         violations: Constraint name -> number of episodes that violated it.
-        late: Number of episodes that cost points for computation time.
         agent_errors: Number of episodes that the agent failed.
     """
 
@@ -132,7 +131,6 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
     penalty: float
     deployability: str
     violations: dict[str, int]
-    late: int
     computation_time: RunTime
     agent_errors: int
 

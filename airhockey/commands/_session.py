@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import secrets
 import shlex
 import sys
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping
@@ -147,8 +148,15 @@ def disturbances_of(given: Mapping[str, Any]) -> str:
     return from_anywhere(given["disturbances"], available())
 
 
-def game_options_of(given: Mapping[str, Any]) -> GameOptions:
-    """How games are played, from the options that are there."""
+def agent_seed_of(given: str | None, agents: Iterable[str]) -> str | None:
+    """The secret of the agents' seeds: as typed, or drawn where somebody else's code plays."""
+    if given is not None or all(agent in AGENTS for agent in agents):
+        return given
+    return secrets.token_hex(16)
+
+
+def game_options_of(given: Mapping[str, Any], agents: Iterable[str] = ()) -> GameOptions:
+    """How games between these agents are played, from the options that are there."""
     return GameOptions(
         steps=given["steps"],
         disturbances=disturbances_of(given),
@@ -156,6 +164,7 @@ def game_options_of(given: Mapping[str, Any]) -> GameOptions:
         variant=given.get("variant", "package"),
         isolate=given["isolate"] or "auto",
         patience=given["patience"],
+        agent_seed=agent_seed_of(given.get("agent_seed"), agents),
     )
 
 

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     help="Parameters of the rule-based player: tuned, thesis, or a YAML file, as `hockey train pgpe` leaves it.",
 )
 @click.option("--episodes", type=click.IntRange(min=1), default=1000, show_default=True, help="Episodes of each task.")
-@common.options(common.seed, common.jobs, common.cluster, common.disturbances)
+@common.options(common.seed, common.agent_seed, common.jobs, common.cluster, common.disturbances)
 @click.option(
     "--interpolation-order",
     type=click.Choice(["1", "2", "3", "4", "5", "-1", "none"]),
@@ -87,7 +87,7 @@ def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
 
 
 def _options(given: dict[str, Any]) -> "Options":
-    from airhockey.commands._session import agent_of, disturbances_of, from_anywhere
+    from airhockey.commands._session import agent_of, agent_seed_of, disturbances_of, from_anywhere
     from airhockey.evaluator import Options
     from airhockey.evaluator.isolation.modes import choose
 
@@ -103,6 +103,7 @@ def _options(given: dict[str, Any]) -> "Options":
         clock=given["clock"],
         isolate=choose(agent, given["isolate"]).mode,
         patience=given["patience"],
+        agent_seed=agent_seed_of(given["agent_seed"], (agent,)),
         parameters=None if given["parameters"] is None else from_anywhere(given["parameters"]),
     )
 

@@ -27,6 +27,8 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
         edition: Rule edition.
         isolate: Where the agent lives: with the evaluator, in a process of its own, or in a sandbox.
         patience: Longest time for an answer of an agent that lives elsewhere, in [s].
+        agent_seed: Secret from which the seeds of the agent's own generators come, in hexadecimal, so that no agent can find the
+            environment's; None for seeds that follow from `seed`.
         parameters: Of the rule-based player: a name that it knows or the absolute path of a YAML file; None for its own.
     """
 
@@ -41,6 +43,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     isolate: Literal["none", "process", "sandbox"] = "none"
     patience: float = 60.0
     parameters: str | None = None
+    agent_seed: str | None = None
 
 
 class Job(msgspec.Struct, frozen=True):

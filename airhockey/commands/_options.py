@@ -85,7 +85,10 @@ as_json = click.option("--json", "as_json", is_flag=True, help="Print the result
 quiet = click.option("--quiet", is_flag=True, help="No progress, only the result.")
 only_notes = click.option("--quiet", is_flag=True, help="Only say what is missing.")
 host = click.option(
-    "--host", default="127.0.0.1", show_default=True, help="Address to listen on; there is no password."
+    "--host",
+    default="127.0.0.1",
+    show_default=True,
+    help="Address to listen on; the page's address holds a token.",
 )
 port = click.option(
     "--port",

@@ -4,7 +4,6 @@ In the plane of the table everything is given in the table frame (`airhockey.age
 opponent), like the estimate of the puck. Only the joint controller thinks in the robot frame: `to_robot` is the way there.
 """
 
-from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -18,7 +17,6 @@ from airhockey.agents.table import to_robot, to_table
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
 class Situation:
     """What the player knows at one control step.
 
@@ -34,19 +32,21 @@ class Situation:
         tip_velocity: Its commanded velocity, in [m]/[s]. Shape (2,).
     """
 
-    puck: PuckEstimate
-    predictor: PuckPredictor
-    controller: JointController
-    opponent: Array | None
-    step: int
-    dt: float
-    tip: Array = field(init=False)
-    tip_velocity: Array = field(init=False)
+    __slots__ = ("controller", "dt", "opponent", "predictor", "puck", "step", "tip", "tip_velocity")
 
-    def __post_init__(self) -> None:
-        """Note where the rod tip is before it is commanded elsewhere."""
-        object.__setattr__(self, "tip", to_table(self.controller.tip_position()))
-        object.__setattr__(self, "tip_velocity", self.controller.tip_velocity())
+    def __init__(
+        self,
+        puck: PuckEstimate,
+        predictor: PuckPredictor,
+        controller: JointController,
+        opponent: Array | None,
+        step: int,
+        dt: float,
+    ) -> None:
+        self.puck, self.predictor, self.controller = puck, predictor, controller
+        self.opponent, self.step, self.dt = opponent, step, dt
+        state = controller.state
+        self.tip, self.tip_velocity = to_table(state.tip), state.tip_velocity
 
     def puck_at(self, time: float) -> tuple[Array, Array]:
         """State (x, y, ẋ, ẏ, yaw rate) and covariance of the puck a time from now, in [s]. Shapes (5,), (5, 5)."""

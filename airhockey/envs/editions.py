@@ -8,10 +8,10 @@ from importlib import resources
 from typing import Any
 
 import msgspec
-import yaml
 
 from airhockey.envs.specs import IIWA, MALLET, PLANAR, PUCK, TABLE, RobotSpec
 from airhockey.errors import ConfigurationError, unknown
+from airhockey.inputs.plain_yaml import load_yaml
 
 Range = tuple[float, float]
 ROBOTS: dict[str, RobotSpec] = {"planar": PLANAR, "iiwa": IIWA}
@@ -193,8 +193,8 @@ def edition(name: str = "2023") -> Edition:
         raise unknown("edition", name, available())
     text = resources.files("airhockey.envs").joinpath(f"assets/editions/{name}.yaml").read_text(encoding="utf-8")
     try:
-        return msgspec.convert(_with_lengths(yaml.safe_load(text)), Edition)
-    except (msgspec.ValidationError, yaml.YAMLError) as error:
+        return msgspec.convert(_with_lengths(load_yaml(text, f"{name}.yaml", aliases=True)), Edition)
+    except msgspec.ValidationError as error:
         raise ConfigurationError(f"edition {name!r} is not valid: {error}") from error
 
 

@@ -12,7 +12,6 @@ from airhockey import envs
 from airhockey.agents.packaging.checkout import find_checkout
 from airhockey.agents.submission import is_submission
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.isolation.agent_client import IsolatedAgent
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.modes import REMOTE, choose
 from airhockey.evaluator.play.build_seats import Entrant, build_seats
@@ -73,7 +72,7 @@ def thinking_time(rollout: Rollout, steps: int) -> float:
         steps: How many to play; each is followed by a pause.
     """
     agent, used = rollout.seats[0].agent, 0.0
-    if not isinstance(agent, IsolatedAgent):
+    if agent is None:
         return used
     rollout.begin()
     for _ in range(steps):

@@ -17,7 +17,6 @@ from airhockey.agents.registry import EVERY_ENVIRONMENT
 from airhockey.agents.submission import CONFIG, submission_config
 from airhockey.compat.entries import notes
 from airhockey.errors import ActionError, AirHockeyError, ConfigurationError, unknown
-from airhockey.evaluator.isolation.agent_client import IsolatedAgent
 from airhockey.evaluator.isolation.failures import AgentDied, AgentTimeout, describe
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.modes import Mode
@@ -128,7 +127,8 @@ def validate(path: Path, mode: Mode, limits: Limits, steps: int = 50, python: st
             )
         sides = [(task, 1) for task in tasks] + [(task, 2) for task in tasks if task == GAME]
         for task, side in sides:
-            outcome = try_out(str(path.resolve()), task, mode, limits, steps, side, python)
+            entrant = Entrant(str(path.resolve()), isolate=mode, limits=limits, python=python)
+            outcome = try_out(entrant, task, steps, side)
             if isinstance(outcome, Trial):
                 trials.append(outcome)
                 problems += _slow(outcome)
@@ -166,11 +166,9 @@ def _cause(problem: Problem) -> str:
     return "the entry's cause"
 
 
-def try_out(
-    agent: str, task: str, mode: Mode, limits: Limits, steps: int, side: int = 1, python: str | None = None
-) -> Trial | Problem:
+def try_out(mine: Entrant, task: str, steps: int, side: int = 1) -> Trial | Problem:
     """Play a few steps of one task, alone or against somebody who stands still."""
-    mine = Entrant(agent, isolate=mode, limits=limits, python=python)
+    limits = mine.limits
     entrants = [mine] if task != GAME else [mine, Entrant("hold")] if side == 1 else [Entrant("hold"), mine]
     began = time.perf_counter()
     env, seats = build_seats(functools.partial(envs.make, task), entrants, Care())
@@ -215,8 +213,6 @@ class _Watched:
 
     def pause(self) -> float:
         """Wait a little; gives the CPU time that the agent used meanwhile, in [s], where it can be told from the evaluator."""
-        if not isinstance(self._agent, IsolatedAgent):
-            return 0.0
         return self._agent.thinks_for(PAUSE)
 
 

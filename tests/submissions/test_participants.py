@@ -43,6 +43,21 @@ REFUSED = {
 }
 
 
+PLAY_HERE = """
+import sys
+sys.path.insert(0, {here!r})
+import numpy as np
+from pathlib import Path
+from test_participants import PLAYS, play, tasks
+zoo, told = Path({zoo!r}), {{}}
+for name in PLAYS:
+    told[name] = list(play(zoo / name, tasks(zoo / name)[0], "none"))
+    if "tournament" in tasks(zoo / name):
+        told[name + " away"] = list(play(zoo / name, "tournament", "none", side=2))
+np.savez({target!r}, **told)
+"""
+
+
 @pytest.fixture(scope="module")
 def zoo(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The zoo outside this repository, with the weights that entries would have trained."""
@@ -52,6 +67,16 @@ def zoo(tmp_path_factory: pytest.TempPathFactory) -> Path:
         code = f"import sys; sys.path.insert(0, '.'); exec(open({script.name!r}).read())"
         subprocess.run([sys.executable, "-c", code], cwd=script.parent, check=True)
     return place
+
+
+@pytest.fixture(scope="module")
+def here(zoo: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+    """What each does without isolation, one after the other in one process: entry -> actions; away games as "NAME away"."""
+    target = tmp_path_factory.mktemp("actions") / "here.npz"
+    code = PLAY_HERE.format(here=str(Path(__file__).parent), zoo=str(zoo), target=str(target))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-2000:]
+    return dict(np.load(target))
 
 
 def tasks(entry: Path) -> list[str]:
@@ -85,18 +110,23 @@ def test_the_lists_are_the_zoo() -> None:
     assert len(PLAYS) + len(REFUSED) >= 20
 
 
-@pytest.mark.parametrize("name", PLAYS)
-def test_one_plays_the_same_in_a_process_and_in_a_sandbox(zoo: Path, sandbox: None, name: str) -> None:
-    task = tasks(zoo / name)[0]
-    steps = [list(play(zoo / name, task, mode)) for mode in ("process", "sandbox")]
-    assert len(steps[0]) == STEPS
-    if name != "threaded_planner":  # when its plan is there is a matter of the machine
-        np.testing.assert_array_equal(*steps)
+def test_all_play_at_home_and_away(here: dict[str, Any]) -> None:
+    assert {name for name in here if not name.endswith(" away")} == set(PLAYS)
+    assert sum(name.endswith(" away") for name in here) >= 15
+    assert all(len(actions) == STEPS and np.isfinite(actions).all() for actions in here.values())
 
 
-@pytest.mark.parametrize("name", [name for name in PLAYS if "tournament" in tasks(ZOO / name)])
-def test_one_plays_away(zoo: Path, sandbox: None, name: str) -> None:
-    assert len(list(play(zoo / name, "tournament", "sandbox", side=2))) == STEPS
+@pytest.mark.parametrize("name", [name for name in PLAYS if name != "threaded_planner"])
+def test_one_plays_in_the_sandbox_as_here(zoo: Path, here: dict[str, Any], sandbox: None, name: str) -> None:
+    np.testing.assert_array_equal(list(play(zoo / name, tasks(zoo / name)[0], "sandbox")), here[name])
+
+
+@pytest.mark.parametrize("name", ["agent_id_fixed", "one_agent_a_task", "own_copy_extended", "relative_files"])
+def test_one_plays_away_in_a_process_and_in_the_sandbox(
+    zoo: Path, here: dict[str, Any], sandbox: None, name: str
+) -> None:
+    for mode in ("process", "sandbox"):
+        np.testing.assert_array_equal(list(play(zoo / name, "tournament", mode, side=2)), here[f"{name} away"])
 
 
 @pytest.mark.parametrize("name", REFUSED)

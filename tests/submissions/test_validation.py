@@ -14,6 +14,7 @@ from tools import needs_opencv
 
 from airhockey.agents.packaging.packing import pack
 from airhockey.evaluator.isolation.limits import Limits
+from airhockey.evaluator.play.build_seats import Entrant
 from airhockey.evaluator.validation import Trial, try_out, validate
 
 LIMITS = Limits(start=60.0, patience=20.0)
@@ -30,7 +31,7 @@ def test_our_submissions_are_packed_validated_and_played(name: str, tmp_path: Pa
 
 def test_our_packed_agent_plays_in_the_sandbox(sandbox: None, tmp_path: Path) -> None:
     packed = pack(SUBMISSIONS / "planner", tmp_path / "packed.zip")
-    outcome = try_out(str(packed.path), "7dof-hit", "sandbox", LIMITS, 20)
+    outcome = try_out(Entrant(str(packed.path), isolate="sandbox", limits=LIMITS), "7dof-hit", 20)
     assert isinstance(outcome, Trial) and outcome.steps == 20 and outcome.start < 30.0
 
 
@@ -127,6 +128,6 @@ def build_agent(env_info, **kwargs):
 @pytest.mark.parametrize("task", ["3dof-defend", "tournament"])
 def test_an_agent_with_preprocessors_is_as_fit_as_the_evaluator_finds_it(tmp_path: Path, task: str) -> None:
     (tmp_path / "agent_builder.py").write_text(PREPROCESSED)
-    outcome = try_out(str(tmp_path), task, "none", LIMITS, 5)
+    outcome = try_out(Entrant(str(tmp_path), limits=LIMITS), task, 5)
     assert isinstance(outcome, Trial), outcome
     assert outcome.steps == 5

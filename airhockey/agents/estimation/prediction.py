@@ -1,19 +1,19 @@
 """Where the puck will be: at a time, on a line, along a path; with the covariance of the answer."""
 
-from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
-from airhockey.agents.estimation.kalman import PuckEstimate, predict
+from airhockey.agents.estimation.kalman import PuckEstimate, motion_model, predict
 from airhockey.agents.estimation.motion import PuckMotion, puck_motion
+from airhockey.envs.compiled import pack
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Crossing:
+class Crossing(NamedTuple):
     """The puck's passage of a line x = constant.
 
     Attributes:
@@ -39,8 +39,7 @@ class PuckPredictor:
             motion: Constants of the puck's motion.
         """
         self._step = step
-        self._motion = motion or puck_motion()
-        self._constants = self._motion.constants
+        self._model = pack(motion_model(motion or puck_motion()))
         self._drift = np.diag([0.0, 0.0, drift_velocity, drift_velocity, 0.1]) ** 2
         still = PuckEstimate(np.array([0.0, 0.0, 1.0, 0.0, 0.0]), np.eye(5), 0)
         self.at_time(still, 2 * step)
@@ -76,18 +75,16 @@ class PuckPredictor:
 
     def _run(self, estimate: PuckEstimate, time: float) -> tuple[Array, Array]:
         steps = max(1, round(time / self._step))
-        return _run(
-            estimate.state, estimate.covariance, steps, self._step, self._constants, self._drift,
-            self._motion.restitution_spread, self._motion.slip_spread,
-        )  # fmt: skip
+        return _run(estimate.state, estimate.covariance, steps, self._step, self._drift, self._model)
 
 
 @compiled
 def _run(
-    state: Array, covariance: Array, steps: int, step: float, constants: Array, drift: Array, e: float, k: float
+    state: Array, covariance: Array, steps: int, step: float, drift: Array, packed: NDArray[Any]
 ) -> tuple[Array, Array]:
+    """States and covariances at every step [s] from now. Shapes (steps + 1, 5), (steps + 1, 5, 5)."""
     states, covariances = np.empty((steps + 1, 5)), np.empty((steps + 1, 5, 5))
     states[0], covariances[0] = state, covariance
     for i in range(steps):
-        states[i + 1], covariances[i + 1] = predict(states[i], covariances[i], step, constants, drift, e, k)
+        states[i + 1], covariances[i + 1] = predict(states[i], covariances[i], step, drift, packed[0])
     return states, covariances

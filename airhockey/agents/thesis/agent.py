@@ -11,7 +11,7 @@ from airhockey.agents.control.parameters import control_parameters
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.prediction import PuckPredictor
 from airhockey.agents.estimation.watch import TableWatch
-from airhockey.agents.table import to_robot, to_table
+from airhockey.agents.table import to_robot
 from airhockey.agents.thesis.defend import DefendPolicy
 from airhockey.agents.thesis.hit import HitPolicy
 from airhockey.agents.thesis.home import HomePolicy
@@ -95,8 +95,7 @@ class ThesisAgent(AgentBase):
         return self._controller.step(to_robot(move.target), move.velocity)
 
     def _view(self, observation: Array) -> View:
-        tip = to_table(self._controller.tip_position())
-        puck, opponent = self._watch.see(observation, tip)
+        puck, tip, opponent = self._watch.see(observation, self._controller.tip_position())
         self._opponent.see(opponent)
         return View(puck, tip, self._controller.tip_velocity(), opponent, self._dt)
 

@@ -12,14 +12,22 @@ counts towards 180°: in the lower half β grows by it, in the upper half it shr
 """
 
 from dataclasses import dataclass, field
-from math import asin, cos, degrees, hypot, radians, sin, sqrt
+from math import asin, cos, degrees, hypot, inf, radians, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.table import CONTACT, HALF_LENGTH, HALF_WIDTH, OPPONENT_GOAL
 from airhockey.agents.thesis.opponent import OpponentWatch
-from airhockey.agents.thesis.polar import Polar, cartesian, direction_angle, limited_step, polar, stoppable_step
+from airhockey.agents.thesis.polar import (
+    Polar,
+    cartesian,
+    direction_angle,
+    distance,
+    limited_step,
+    polar,
+    stoppable_step,
+)
 from airhockey.agents.thesis.policy import Move, View, enough_space
 from airhockey.envs.specs import MALLET, PUCK
 
@@ -27,6 +35,8 @@ Array = NDArray[np.float64]
 
 _DECAY = PUCK.slide_damping / PUCK.mass
 """Share of its velocity that a sliding puck loses per second, in [1/s]."""
+_PASSING = np.array([-1.5, -0.75, 0.0, 0.75]) * CONTACT
+"""Where a puck that goes by is looked at, from the opponent's mallet along its way, in [m]."""
 _EDGE = 0.012
 """Room that is left between mallet and rim, in [m]."""
 
@@ -149,12 +159,13 @@ class HitPolicy:
     def _aim(self, view: View) -> tuple[Array, float]:
         """Where the puck will be when it is hit, (2,), and γ, corrected for the puck's own motion across the line."""
         p = self._parameters
-        reach = hypot(*(view.puck.position - view.tip)) - CONTACT
+        reach = distance(view.puck.position, view.tip) - CONTACT
         share = min(max(reach / (p.stand_off - CONTACT), 0.0), 1.0)
         remaining = p.strike_time * (1.0 - sqrt(1.0 - share))  # of a motion at constant acceleration
         puck = view.puck.position + remaining * view.puck.velocity
         gamma = radians(direction_angle(puck, OPPONENT_GOAL))
-        across = float(view.puck.velocity[1]) * cos(gamma) - float(view.puck.velocity[0]) * sin(gamma)
+        forward, sideways = view.puck.velocity.tolist()
+        across = sideways * cos(gamma) - forward * sin(gamma)
         return puck, degrees(gamma - asin(min(max(p.across * across / self._speed(puck), -0.5), 0.5)))
 
     def _speed(self, puck: Array) -> float:
@@ -176,12 +187,15 @@ class HitPolicy:
         target = cartesian(puck, Polar(here.beta + side * turn, radius), gamma)
         run_up = stand_off + p.run_up - p.stand_off
         ready = self.phase == "adjustment" and abs(off) < p.aligned and here.radius < run_up
-        patience = p.patience if self._opponent.repeats else p.hesitation
-        if ready and (self._t_phase > patience or self._gap(view)):
+        if ready and (self._out_of_patience() or self._gap(view)):
             self._enter("acceleration")
         end = cartesian(puck, Polar(180.0, stand_off), gamma)
         longest = min(p.longest_step, stoppable_step(view.tip, end, p.acceleration, view.dt))
         return Move(limited_step(view.tip, target, longest))
+
+    def _out_of_patience(self) -> bool:
+        p = self._parameters
+        return self._t_phase > (p.patience if self._opponent.repeats else p.hesitation)
 
     def _gap(self, view: View) -> bool:
         """Whether the opponent's mallet will be out of the way while the puck goes by."""
@@ -191,11 +205,12 @@ class HitPolicy:
             return True
         if not self._opponent.ready:
             return False
-        way = (OPPONENT_GOAL - puck) / hypot(*(OPPONENT_GOAL - puck))
+        way = (OPPONENT_GOAL - puck) / distance(OPPONENT_GOAL, puck)
         across, speed = np.array([-way[1], way[0]]), self._speed(puck)
-        passing = float(way @ (mallet - puck)) + np.array([-1.5, -0.75, 0.0, 0.75]) * CONTACT
-        times = p.strike_time - np.log(1.0 - np.clip(_DECAY * passing / speed, 0.0, 0.95)) / _DECAY
-        return all(abs(across @ (self._opponent.at(float(time)) - puck)) > p.gap for time in times)
+        passing = float(way @ (mallet - puck)) + _PASSING
+        slowed = np.minimum(np.maximum(_DECAY * passing / speed, 0.0), 0.95)
+        times = p.strike_time - np.log(1.0 - slowed) / _DECAY
+        return all(abs(across @ (mallet - puck)) > p.gap for mallet in self._opponent.along(times))
 
     def _accelerate(self, view: View) -> Move:
         """Through the puck, along the line to the goal."""
@@ -225,10 +240,12 @@ class HitPolicy:
 
 def room_behind(puck: Array, gamma: float) -> float:
     """Largest distance at which the mallet can stand behind the puck on the line to the goal, in [m]."""
-    direction = np.array([cos(radians(gamma)), sin(radians(gamma))])
-    edge = np.array([HALF_LENGTH, HALF_WIDTH]) - MALLET.radius - _EDGE
-    reach = (edge + np.sign(direction) * puck) / np.maximum(np.abs(direction), 1e-9)
-    return max(float(reach.min()), CONTACT)
+    turned, (x, y) = radians(gamma), puck.tolist()
+    reach = inf
+    for along, half, place in ((cos(turned), HALF_LENGTH, x), (sin(turned), HALF_WIDTH, y)):
+        room = half - MALLET.radius - _EDGE + (place if along > 0.0 else -place)
+        reach = min(reach, room / max(abs(along), 1e-9))
+    return max(reach, CONTACT)
 
 
 def _side(puck: Array) -> float:

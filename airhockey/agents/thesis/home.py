@@ -79,7 +79,7 @@ class HomePolicy:
         near = CONTACT + self._parameters.clearance
         ahead = view.puck.position + view.dt * view.puck.velocity
         away = target - ahead
-        distance = hypot(*away)
+        distance = hypot(*away.tolist())
         if distance >= near:
             return target
         outwards = away if distance > 1e-6 else view.tip - ahead

@@ -1,7 +1,6 @@
 """What the thesis's policies share: what they see, what they answer, and the room a hit needs."""
 
-from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +15,7 @@ TOLERANCE = PUCK.radius + 2.0 * MALLET.radius
 """Room that a mallet needs behind the puck (4.10), in [m]."""
 
 
-@dataclass(frozen=True)
-class View:
+class View(NamedTuple):
     """What a policy decides on, in the table frame.
 
     Attributes:
@@ -35,8 +33,7 @@ class View:
     dt: float
 
 
-@dataclass(frozen=True)
-class Move:
+class Move(NamedTuple):
     """What a policy wants of the end-effector.
 
     Attributes:
@@ -75,6 +72,5 @@ def enough_space(puck_position: Array, side_tolerance: float = 0.0, end_toleranc
         end_tolerance: The same at the short borders, where it differs: room to take a run-up.
     """
     end = side_tolerance if end_tolerance is None else end_tolerance
-    x_tol = HALF_LENGTH - end - abs(puck_position[0])
-    y_tol = HALF_WIDTH - side_tolerance - abs(puck_position[1])
-    return bool(x_tol >= TOLERANCE and y_tol >= TOLERANCE)
+    x, y = float(puck_position[0]), float(puck_position[1])
+    return HALF_LENGTH - end - abs(x) >= TOLERANCE and HALF_WIDTH - side_tolerance - abs(y) >= TOLERANCE

@@ -10,6 +10,7 @@ from airhockey.agents.packaging.checkout import find_checkout
 from airhockey.agents.submission import is_submission
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.isolation.handle import AgentHandle
+from airhockey.evaluator.isolation.interpreters import Interpreter, foreign_job, interpreter
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.modes import REMOTE, Mode
 
@@ -47,8 +48,7 @@ def build_agent(
         from airhockey.evaluator.isolation.remote import RemoteAgent
 
         return RemoteAgent(agent, env.env_info, order, limits.patience)
-    if python is not None:
-        return _build_foreign(agent, env, agent_id, mode, limits, seed, python, kwargs)
+    own = None if python is None else _own_interpreter(agent, mode, python)
     if mode == "none":
         from airhockey.evaluator.isolation.build_local import build_local
 
@@ -57,40 +57,27 @@ def build_agent(
     from airhockey.evaluator.isolation.launch import plain, sandboxed
 
     checkout = find_checkout(Path(agent).expanduser()) if is_submission(agent) else None
-    launch = plain(checkout) if mode == "process" else sandboxed(checkout, limits)
-    job = {
-        "agent": launch.submission or agent,
-        "env": env.name,
-        "order": order,
-        "edition": env.edition.edition,
-        "agent_id": agent_id,
-        "kwargs": kwargs,
-    }
+    launch = plain(checkout, own) if mode == "process" else sandboxed(checkout, limits, own)
+    if own is not None and checkout is not None:
+        inside = str(checkout.root) if mode == "process" else str(launch.submission)
+        job = foreign_job(checkout, inside, env, agent_id, kwargs) | {"agent": agent}
+    else:
+        job = {
+            "agent": launch.submission or agent,
+            "env": env.name,
+            "order": order,
+            "edition": env.edition.edition,
+            "agent_id": agent_id,
+            "kwargs": kwargs,
+        }
     return IsolatedAgent(launch, job, limits, seed)
 
 
-def _build_foreign(
-    agent: str,
-    env: Any,
-    agent_id: int,
-    mode: Mode,
-    limits: Limits,
-    seed: np.random.SeedSequence | None,
-    python: str,
-    kwargs: dict[str, Any],
-) -> AgentHandle:
-    """A submission in an interpreter of its own."""
-    from airhockey.evaluator.isolation.agent_client import IsolatedAgent
-    from airhockey.evaluator.isolation.interpreters import foreign_job, interpreter
-    from airhockey.evaluator.isolation.launch import plain, sandboxed
-
+def _own_interpreter(agent: str, mode: Mode, python: str) -> Interpreter:
+    """The interpreter that a submission in a process of its own brings along."""
     if not is_submission(agent) or mode == "none":
         raise ConfigurationError(
             f"--python is for submissions in a process of their own; {agent!r} runs with the evaluator "
             "(--isolate process or sandbox for a submission)"
         )
-    own, checkout = interpreter(python), find_checkout(Path(agent).expanduser())
-    launch = plain(checkout, own) if mode == "process" else sandboxed(checkout, limits, own)
-    inside = str(checkout.root) if mode == "process" else str(launch.submission)
-    job = foreign_job(checkout, inside, env, agent_id, kwargs) | {"agent": agent}
-    return IsolatedAgent(launch, job, limits, seed)
+    return interpreter(python)

@@ -117,7 +117,6 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
         success: Share of episodes, 0 … 1.
         penalty: Penalty points, summed over the episodes.
         violations: Constraint name -> number of episodes that violated it.
-        late: Number of episodes that cost points for computation time.
         agent_errors: Number of episodes that the agent failed.
     """
 
@@ -130,7 +129,6 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
     penalty: float
     deployability: str
     violations: dict[str, int]
-    late: int
     computation_time: RunTime
     agent_errors: int
 

@@ -40,20 +40,20 @@ def approach(
         Position and velocity at the end of the step. Shapes (2,), (2,).
     """
     away = place - tip
-    distance = hypot(*away)
+    distance = hypot(*away.tolist())
     wanted = away * (min(speed, GAIN * distance, 0.85 * sqrt(2.0 * acceleration * distance)) / max(distance, 1e-9))
     if keep_off is not None:
         wanted = _round(tip, wanted, place, keep_off, CONTACT + clearance)
     change = wanted - velocity
     largest = acceleration * dt
-    moving = velocity + change * min(1.0, largest / max(hypot(*change), 1e-9))
+    moving = velocity + change * min(1.0, largest / max(hypot(*change.tolist()), 1e-9))
     return tip + 0.5 * dt * (velocity + moving), moving
 
 
 def _round(tip: Array, wanted: Array, place: Array, puck: Array, distance: float) -> Array:
     """A velocity that slides along the circle about the puck instead of into it. Shape (2,)."""
     outwards = tip - puck
-    gap = hypot(*outwards)
+    gap = hypot(*outwards.tolist())
     outwards = outwards / max(gap, 1e-9)
     inwards = -float(wanted @ outwards)
     room = gap - distance

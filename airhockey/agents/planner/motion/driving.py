@@ -24,7 +24,7 @@ def drive(situation: Situation, velocity: Array, acceleration: float) -> Array:
     """
     tip, present = situation.tip, situation.tip_velocity
     change = velocity - present
-    size = max(hypot(*change), 1e-9)
+    size = max(hypot(*change.tolist()), 1e-9)
     after = present + change * min(1.0, acceleration * situation.dt / size)
     return situation.move(tip + 0.5 * situation.dt * (present + after), after)
 
@@ -32,7 +32,7 @@ def drive(situation: Situation, velocity: Array, acceleration: float) -> Array:
 def go_to(situation: Situation, place: Array, speed: float, acceleration: float, gain: float = 10.0) -> Array:
     """One step towards a place, arriving at rest. In [m], [m]/[s], [m]/[s²], [1/s]. Shape (2, n)."""
     way = place - situation.tip
-    distance = max(hypot(*way), 1e-9)
+    distance = max(hypot(*way.tolist()), 1e-9)
     braking = sqrt(1.2 * acceleration * distance)  # leaves a reserve: 2 a d would need all of it
     return drive(situation, way / distance * min(speed, braking, gain * distance), acceleration)
 

@@ -13,7 +13,7 @@ class Network(AgentBase):
         self.scale = info.action_space.high / 320.0
         assert info.action_space.low.shape == (done,) and isinstance(info.action_space, Box)
         torch.manual_seed(1)
-        self.policy = torch.nn.Sequential(torch.nn.Linear(seen, 16), torch.nn.Tanh(), torch.nn.Linear(16, done))
+        self.net = torch.nn.Sequential(torch.nn.Linear(seen, 16), torch.nn.Tanh(), torch.nn.Linear(16, done))
         changed = dict(env_info)
         changed["rl_info"].observation_space = Box(info.observation_space.low, info.observation_space.high)
         super().__init__(changed, **kwargs)
@@ -25,6 +25,6 @@ class Network(AgentBase):
         if self.start is None:
             self.start = self.get_joint_pos(observation)
         with torch.no_grad():
-            out = self.policy(torch.as_tensor(observation, dtype=torch.float32)).numpy().astype(np.float64)
+            out = self.net(torch.as_tensor(observation, dtype=torch.float32)).numpy().astype(np.float64)
         position = self.start + 0.01 * np.tanh(self.scale * out)[: self.start.size]
         return np.stack((position, np.zeros_like(position)))

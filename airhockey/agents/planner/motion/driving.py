@@ -22,11 +22,17 @@ def drive(situation: Situation, velocity: Array, acceleration: float) -> Array:
     Returns:
         Joint command. Shape (2, n).
     """
-    tip, present = situation.tip, situation.tip_velocity
-    change = velocity - present
-    size = max(hypot(*change.tolist()), 1e-9)
-    after = present + change * min(1.0, acceleration * situation.dt / size)
-    return situation.move(tip + 0.5 * situation.dt * (present + after), after)
+    (x, y), (present_x, present_y), (wanted_x, wanted_y) = (
+        situation.tip.tolist(),
+        situation.tip_velocity.tolist(),
+        velocity.tolist(),
+    )
+    change_x, change_y = wanted_x - present_x, wanted_y - present_y
+    share = min(1.0, acceleration * situation.dt / max(hypot(change_x, change_y), 1e-9))
+    after_x, after_y = present_x + change_x * share, present_y + change_y * share
+    half = 0.5 * situation.dt
+    place = np.array([x + half * (present_x + after_x), y + half * (present_y + after_y)])
+    return situation.move(place, np.array([after_x, after_y]))
 
 
 def go_to(situation: Situation, place: Array, speed: float, acceleration: float, gain: float = 10.0) -> Array:

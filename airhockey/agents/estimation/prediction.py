@@ -1,5 +1,6 @@
 """Where the puck will be: at a time, with the covariance of the answer; on a line; along a path."""
 
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -66,6 +67,12 @@ class PuckPredictor:
 
     def _steps(self, time: float) -> int:
         return max(1, round(time / self._step))
+
+
+@cache
+def puck_predictor() -> PuckPredictor:
+    """The one that players ask, with the identified constants."""
+    return PuckPredictor()
 
 
 @compiled

@@ -11,9 +11,8 @@ from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.kalman import PuckEstimate
-from airhockey.agents.estimation.prediction import PuckPredictor
 from airhockey.agents.parameters import convert
-from airhockey.agents.planner.motion.approach import approach
+from airhockey.agents.planner.motion.approach import Pace, approach
 from airhockey.agents.planner.motion.strike import Strike, run_up
 from airhockey.agents.planner.shots.parameters import SmashParameters, smash_parameters
 from airhockey.agents.planner.tactics import choose
@@ -89,7 +88,7 @@ def test_the_approach_gets_there_round_the_puck_without_touching_it() -> None:
     tip, velocity, place, puck = np.array([-0.4, 0.02]), np.zeros(2), np.array([-0.75, 0.0]), np.array([-0.58, 0.0])
     for _ in range(200):
         before = velocity
-        tip, velocity = approach(tip, velocity, place, 0.8, 3.0, DT, puck, 0.02)
+        tip, velocity = approach(tip, velocity, place, Pace(0.8, 3.0, 0.02), DT, puck)
         assert np.hypot(*(velocity - before)) <= 3.0 * DT + 1e-9
         assert np.hypot(*(tip - puck)) > CONTACT
     assert tip == pytest.approx(place, abs=0.002)
@@ -102,7 +101,7 @@ def situation(x: float, velocity: tuple[float, float], tip: tuple[float, float] 
     assert q is not None
     controller.reset(q)
     puck = PuckEstimate(np.array([x, 0.0, *velocity, 0.0]), np.eye(5), 0)
-    return Situation(puck, PuckPredictor(), controller, None, 0, DT)
+    return Situation(puck, np.array(tip), controller.tip_velocity(), None, DT, 0, controller.move)
 
 
 @pytest.mark.parametrize(

@@ -26,6 +26,7 @@ from airhockey.agents.control.tip_velocity_control import (
     tip_velocity_to,
 )
 from airhockey.agents.control.workspace import Workspace
+from airhockey.agents.table import to_robot
 
 Array = NDArray[np.float64]
 
@@ -142,6 +143,10 @@ class JointController:
         """
         self.state, self.exact = self.next_state(self.state, target, velocity, anchor)
         return self.state.as_action()
+
+    def move(self, target: Array, velocity: Array | None = None, anchor: Array | None = None) -> Array:
+        """The same for a target in the table frame."""
+        return self.step(to_robot(target), velocity, anchor)
 
     def brake(self) -> Array:
         """Bring the rod tip to rest as fast as the limits allow. Returns the joint command. Shape (2, n)."""

@@ -8,7 +8,8 @@ Only a puck that comes towards the own goal needs defending; the thesis leaves t
 from dataclasses import dataclass
 
 from airhockey.agents.estimation.motion import advance, puck_motion
-from airhockey.agents.thesis.policy import View, enough_space
+from airhockey.agents.skill import Situation
+from airhockey.agents.thesis.policy import enough_space
 from airhockey.agents.thesis.state_machine import Task
 
 
@@ -41,13 +42,13 @@ class Switcher:
         self._parameters, self._tasks = parameters, tasks
         self._constants = puck_motion().constants
 
-    def choose(self, view: View) -> Task:
+    def choose(self, now: Situation) -> Task:
         """The task that the situation asks for; home where it is not among those that may be played."""
-        task = self._wanted(view)
+        task = self._wanted(now)
         return task if task in self._tasks else Task.HOME
 
-    def _wanted(self, view: View) -> Task:
-        p, puck = self._parameters, view.puck
+    def _wanted(self, now: Situation) -> Task:
+        p, puck = self._parameters, now.puck
         if puck.speed > p.defend_speed and puck.velocity[0] < -p.approach_speed:
             return Task.DEFEND
         if puck.position[0] >= p.reach_x:

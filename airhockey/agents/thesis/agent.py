@@ -78,6 +78,7 @@ class ThesisAgent(AgentBase):
         self._watch.reset()
         self._opponent.reset()
         self._machine.reset()
+        self._switcher.reset()
         self._policies[Task.HOME].start()
         self._finished = False
         self._first = True

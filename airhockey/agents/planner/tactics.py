@@ -44,7 +44,7 @@ def choose(
             return now
         return answer if situation.puck.speed > FAST else "defend"
     apart = float(np.hypot(*(puck - situation.tip))) > CONTACT + APART
-    if stroke is not None and (apart or now != "prepare"):
+    if stroke is not None and (apart or finished or now != "prepare"):
         return stroke
     if now == "prepare" and not finished and puck[0] < OURS:
         return "prepare"

@@ -33,7 +33,7 @@ KINDS = (
     Kind("corner", 0, FULL, 0.05, False),
     Kind("rim", 1, FULL, 0.0, False),
     Kind("two rims", 2, FULL, 0.0, False),
-    Kind("slow rim", 1, 1.0, 0.0, False),
-    Kind("middling rim", 1, 1.35, 0.0, False),
+    Kind("slow rim", 1, 1.15, 0.04, False),
+    Kind("middling rim", 1, 1.4, 0.0, False),
     Kind("rolling corner", 0, 0.92, 0.06, False),
 )

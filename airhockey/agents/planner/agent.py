@@ -28,13 +28,13 @@ from airhockey.agents.table import to_table
 WARM_UP_STEPS = 60
 """Per skill and puck."""
 EXPECTED = {
-    "open": 0.06, "corner": 0.05, "rim": 0.05, "two rims": 0.06, "slow rim": 0.06, "middling rim": 0.05,
-    "rolling corner": 0.03, "drop": 0.03,
+    "open": 0.05, "corner": 0.04, "rim": 0.05, "middling rim": 0.05, "slow rim": 0.1, "slower rim": 0.1, "slowest rim": 0.1,
+    "rolling corner": 0.03, "drop": 0.04,
 }  # fmt: skip
 """Points per try that a game begins with."""
 ANSWERS = {"repel": 0.05, "defend": 0.05}
 """The same for the answers to a puck that comes."""
-TRIES = 8.0
+TRIES = 6.0
 """How many tries these expectations are worth."""
 IN_VAIN = 0.3
 """Time for which a stroke of the kind chosen is looked for, in [s]; then another is chosen."""

@@ -38,5 +38,5 @@ KINDS = (
     Kind("slowest rim", 1, 1.04, 0.02, False),
     Kind("rolling corner", 0, 0.92, 0.06, False),
 )
-"""Those of a game. The slow ones come in by the rim with little left of their speed: who foresees no bounce goes the wrong way first,
-and who does must wait."""
+"""Those of a game. The slow ones come in by the rim with little left of their speed: who foresees no bounce goes the wrong
+way first, and who does must wait."""

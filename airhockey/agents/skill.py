@@ -38,6 +38,7 @@ class Situation(NamedTuple):
         dt: Length of a control step, in [s].
         step: Control steps since the serve; 0 at the first observation.
         move: Commands the rod tip.
+        joints: Commanded joint positions before this step, in [rad]; None where nobody asks. Shape (n,).
     """
 
     puck: PuckEstimate
@@ -47,6 +48,7 @@ class Situation(NamedTuple):
     dt: float = 0.02
     step: int = 0
     move: Command = no_command
+    joints: Array | None = None
 
     def puck_at(self, time: float) -> Array:
         """State (x, y, ẋ, ẏ, yaw rate) of the puck a time from now, in [s]. Shape (5,)."""

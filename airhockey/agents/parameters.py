@@ -9,9 +9,8 @@ import math
 from pathlib import Path
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
-import yaml
-
 from airhockey.errors import ConfigurationError, unknown
+from airhockey.inputs.plain_yaml import read_yaml
 
 T = TypeVar("T")
 
@@ -28,13 +27,7 @@ def load_parameters(schema: type[T], source: str | Path, folder: Path) -> T:
         ConfigurationError: No such file, not YAML, an unknown or a missing key, a value of the wrong type or length.
     """
     path = _find(source, folder)
-    try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (yaml.YAMLError, OSError, UnicodeDecodeError) as error:
-        raise ConfigurationError(
-            f"cannot read the parameters in {str(path)!r}: {' '.join(str(error).split())}"
-        ) from error
-    return convert(schema, content, path.name)
+    return convert(schema, read_yaml(path), path.name)
 
 
 def convert(schema: type[T], content: Any, where: str) -> T:

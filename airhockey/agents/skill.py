@@ -15,6 +15,9 @@ from airhockey.agents.estimation.prediction import Crossing, puck_predictor
 Array = NDArray[np.float64]
 
 
+NO_JOINTS = np.zeros(0)
+
+
 class Command(Protocol):
     """How a player's rod tip is commanded: see `JointController.move`."""
 
@@ -37,6 +40,7 @@ class Situation(NamedTuple):
         opponent: The opponent's mallet as seen, in the table frame, or None where there is no opponent. Shape (2,).
         dt: Length of a control step, in [s].
         step: Control steps since the serve; 0 at the first observation.
+        joints: Commanded joint positions before this step, in [rad], where they are known. Shape (n,).
         move: Commands the rod tip.
     """
 
@@ -46,6 +50,7 @@ class Situation(NamedTuple):
     opponent: Array | None = None
     dt: float = 0.02
     step: int = 0
+    joints: Array = NO_JOINTS
     move: Command = no_command
 
     def puck_at(self, time: float) -> Array:

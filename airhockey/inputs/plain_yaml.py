@@ -18,7 +18,7 @@ from airhockey.errors import ConfigurationError
 MAX_BYTES = 256 << 10
 """No configuration is larger, in bytes."""
 MAX_DEPTH = 32
-MAX_VALUES = 50_000
+MAX_VALUES = 10_000
 MAX_DIGITS = 40
 _INT = re.compile(r"[-+]?(?:0|[1-9][0-9_]*|0x[0-9a-fA-F_]+|0o[0-7_]+|0[0-9_]+)")
 _FLOAT = re.compile(
@@ -43,12 +43,13 @@ def read_yaml(path: str | os.PathLike[str]) -> Any:
     return load_yaml(raw, os.fspath(path))
 
 
-def load_yaml(content: str | bytes, source: str) -> Any:
+def load_yaml(content: str | bytes, source: str, aliases: bool = False) -> Any:
     """What a text says; None for an empty one.
 
     Args:
         content: The text, or its bytes in UTF-8.
         source: Named in messages: a file.
+        aliases: Allow them: only for files of this package.
 
     Raises:
         ConfigurationError: It is not plain YAML within the bounds.
@@ -57,7 +58,7 @@ def load_yaml(content: str | bytes, source: str) -> Any:
         if len(content) > MAX_BYTES:
             raise ConfigurationError(f"it is larger than {MAX_BYTES >> 10} KiB; no configuration is")
         text = content if isinstance(content, str) else content.decode("utf-8-sig")
-        return yaml.load(text, _Loader)  # a SafeLoader
+        return yaml.load(text, _LoaderWithAliases if aliases else _Loader)  # a SafeLoader
     except ConfigurationError as error:
         raise ConfigurationError(f"cannot read {source!r}: {error}") from None
     except UnicodeDecodeError as error:
@@ -69,13 +70,15 @@ def load_yaml(content: str | bytes, source: str) -> Any:
 class _Loader(yaml.SafeLoader):
     """Plain values only."""
 
+    aliases = False
+
     def __init__(self, stream: str) -> None:
         super().__init__(stream)
         self._depth = self._values = 0
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        event = self.peek_event()
-        if isinstance(event, yaml.AliasEvent):
+        event: yaml.Event = self.peek_event()  # type: ignore[no-untyped-call]
+        if isinstance(event, yaml.AliasEvent) and not self.aliases:
             raise _refused(event, f"the alias *{event.anchor} is not allowed; write the value out")
         self._depth += 1
         self._values += 1
@@ -157,3 +160,9 @@ _Loader.add_constructor(_PLAIN + "map", _mapping)
 _Loader.add_constructor(_PLAIN + "seq", _sequence)
 _Loader.add_constructor(_PLAIN + "int", _Loader.construct_int)
 _Loader.add_constructor(_PLAIN + "float", _Loader.construct_float)
+
+
+class _LoaderWithAliases(_Loader):
+    """For files of this package."""
+
+    aliases = True

@@ -14,7 +14,7 @@ from typing import Any
 from mujoco.studio import launch_thread, viewer_protocol, web_viewer
 
 from airhockey.errors import ConfigurationError
-from airhockey.viewing.key_commands import Ears
+from airhockey.viewing.key_commands import KeyCommands
 from airhockey.viewing.panel import Panel
 
 _STARTING = 30.0  # [s] that a viewer may take to begin
@@ -46,7 +46,7 @@ class BoundViewer(web_viewer.WebViewer):
         return int(self._http_port)
 
 
-def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any, str, Ears]:
+def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any, str, KeyCommands]:
     """Start the viewer in a thread of its own.
 
     Args:
@@ -55,7 +55,7 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
         host, port: To listen on; port 0 for the first free one from 8080.
 
     Returns:
-        MuJoCo's handle, the page's address, and what hears the panel.
+        MuJoCo's handle, the page's address, and what collects commands.
 
     Raises:
         ConfigurationError: The address cannot be listened on.
@@ -75,8 +75,8 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
         ports.put(viewer.port)
         viewer_protocol.run_viewer_loop(viewer)
 
-    ears = Ears()
-    handle = launch_thread.launch_thread(target, sim_plugins=[ears])
+    commands = KeyCommands()
+    handle = launch_thread.launch_thread(target, sim_plugins=[commands])
     handle.model, handle.data = model, data
     bound = _answer(ports)
     if isinstance(bound, BaseException):
@@ -84,7 +84,7 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
             handle.close()
         raise ConfigurationError(f"cannot listen on {host}:{port}: {' '.join(str(bound).split())}") from bound
     _wait_until_it_listens(host, bound)
-    return handle, f"http://{f'[{host}]' if ':' in host else host}:{bound}/", ears
+    return handle, f"http://{f'[{host}]' if ':' in host else host}:{bound}/", commands
 
 
 def check_address(host: str) -> None:

@@ -101,7 +101,9 @@ def situation(x: float, velocity: tuple[float, float], tip: tuple[float, float] 
     assert q is not None
     controller.reset(q)
     puck = PuckEstimate(np.array([x, 0.0, *velocity, 0.0]), np.eye(5), 0)
-    return Situation(puck, np.array(tip), controller.tip_velocity(), None, DT, 0, controller.move)
+    return Situation(
+        puck, np.array(tip), controller.tip_velocity(), None, DT, 0, controller.state.position, controller.move
+    )
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,6 @@
 """The reader of YAML: what people write is what they get, and what attackers write is one line."""
 
 import math
-import time
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +36,7 @@ NINE = "a: &a [x]\n" + "".join(f"{chr(98 + k)}: &{chr(98 + k)} [*{chr(97 + k)}, 
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        (NINE, r"line 2, column .*: the alias \*a is not allowed"),
+        ("[" * 200_000, "nested more than"), (NINE, r"line 2, column .*: the alias \*a is not allowed"),
         ("a: 1\nb: 2\na: 3", "line 3, column 1: the key 'a' stands twice"),
         ("{1: a, 1.0: b}", "stands twice"),
         ("!!python/object/apply:os.system [ls]", "tag"),
@@ -51,7 +50,7 @@ NINE = "a: &a [x]\n" + "".join(f"{chr(98 + k)}: &{chr(98 + k)} [*{chr(97 + k)}, 
         ("[" * 100, "nested more than"),
         ("{a: " * 10_000, "nested more than"),
         ("- " * 10_000, "nested more than"),
-        ("[" + "1," * 60_000 + "]", "more than 50000 values"),
+        ("[" + "1," * 11_000 + "]", "more than 10000 values"),
         ("? [a, b]\n: 1", "a key must be a name"),
         ("a: [1", "not valid YAML"),
         ("a: 1\n---\nb: 2", "not valid YAML"),
@@ -62,11 +61,9 @@ NINE = "a: &a [x]\n" + "".join(f"{chr(98 + k)}: &{chr(98 + k)} [*{chr(97 + k)}, 
     ],
 )  # fmt: skip
 def test_everything_else_is_refused_in_one_line(text: str | bytes, why: str) -> None:
-    began = time.monotonic()
     with pytest.raises(ConfigurationError, match=why) as refused:
         load_yaml(text, "file.yaml")
     assert "'file.yaml'" in str(refused.value) and "\n" not in str(refused.value)
-    assert time.monotonic() - began < 20.0
 
 
 def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:

@@ -30,7 +30,16 @@ class SkillPlayer:
         tip = to_table(self.controller.tip_position())
         near = np.hypot(*(puck[:2] - tip)) < CONTACT + 0.012
         estimate = self.filter.update(puck, observation[info["puck_vel_ids"]], bool(near))
-        return Situation(estimate, tip, self.controller.tip_velocity(), None, info["dt"], step, self.controller.move)
+        return Situation(
+            estimate,
+            tip,
+            self.controller.tip_velocity(),
+            None,
+            info["dt"],
+            step,
+            self.controller.state.position,
+            self.controller.move,
+        )
 
     def play(self, seed):
         """One episode: the last info, whether any constraint was violated, and the last true state of the puck."""

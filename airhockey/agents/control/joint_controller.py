@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.control.aqp import AnchoredQp
-from airhockey.agents.control.kinematics import ArmKinematics
+from airhockey.agents.control.kinematics import ArmKinematics, chosen_kinematics
 from airhockey.agents.control.parameters import ControlParameters, control_parameters
 from airhockey.agents.control.qp import DEFAULT, make_solver
 from airhockey.agents.control.tip_velocity_control import (
@@ -100,11 +100,12 @@ class JointController:
             parameters: By default the package's own for the robot.
         """
         spec = kinematics.spec
-        self.kinematics, self.workspace, self.dt = kinematics, workspace, dt
         self.parameters = p = parameters or control_parameters(spec)
+        self.kinematics, self.workspace, self.dt = chosen_kinematics(kinematics, p.kinematics), workspace, dt
         self._model = step_model(spec, p, workspace, dt)
-        # The package's own solver is part of the compiled step.
-        self._qp = AnchoredQp(np.array(p.anchor_weights), make_solver(p.solver)) if p.solver != DEFAULT else None
+        # The package's own solver and kinematics are parts of the compiled step.
+        compiled = p.solver == DEFAULT and self.kinematics is kinematics
+        self._qp = None if compiled else AnchoredQp(np.array(p.anchor_weights), make_solver(p.solver))
         self._posture = np.array(p.anchor)
         self.height = spec.desired_height
         self.exact = True
@@ -175,6 +176,8 @@ class JointController:
             return JointState(after), advance(state.values, tip_velocity, anchor, self._model, after)
         model = self._model[0]
         asked = demand(state.position, state.velocity, tip_velocity, anchor, model)
+        end = state.position + self.dt * state.velocity
+        asked = asked._replace(jacobian=self.kinematics.jacobian(end)[: len(asked.jacobian)])
         new_velocity = self._qp.solve(asked.jacobian, asked.velocity, asked.anchor, asked.limits)
         exact = new_velocity is not None
         if new_velocity is None:

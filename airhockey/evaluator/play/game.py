@@ -72,7 +72,7 @@ class GamePlay:
         self._rules = edition(options.edition)
         self._episode = self._rules.horizon.task
         self._environment_seed, self._agents_seed = np.random.SeedSequence(job.seed).spawn(2)
-        self.rollout = Rollout(env, seats, self._environment_seed)
+        self.rollout = Rollout(env, seats, self._environment_seed, options.real_time)
         self.log = EventLog(env, self._rules.game.faults_per_point)
         self.penalties = [Penalties(seat, self._rules, env.constraint_slices) for seat in seats]
 

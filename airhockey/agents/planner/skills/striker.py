@@ -22,6 +22,7 @@ class Striker:
 
     def __init__(self, parameters: SmashParameters, dt: float) -> None:
         self._parameters, self._dt = parameters, dt
+        self._posture = np.array(parameters.posture)
         self.phase, self.finished = "look", False
         self._under_way: Strike | None = None
         self._time = 0.0
@@ -60,7 +61,7 @@ class Striker:
             self._under_way = None
             self.abandon()
             self.finished = True
-        return situation.move(position, velocity)
+        return situation.move(position, velocity, self._anchor(situation))
 
     def go(self, situation: Situation, place: Array) -> Array:
         """One step towards a place, round the puck. Shape (2, n)."""
@@ -68,7 +69,14 @@ class Striker:
         ahead = situation.puck.position + FORESIGHT * situation.puck.velocity
         pace = Pace(p.approach_speed, p.approach_acceleration, p.clearance)
         target, velocity = approach(situation.tip, situation.tip_velocity, place, pace, self._dt, ahead)
-        return situation.move(target, velocity)
+        return situation.move(target, velocity, self._anchor(situation))
+
+    def _anchor(self, situation: Situation) -> Array | None:
+        """What draws the joints to the stroke's posture; None where it has none. Shape (n,)."""
+        if len(self._posture) == 0:
+            return None
+        q = situation.joints
+        return np.asarray(q + self._parameters.posture_gain * (self._posture - q))
 
     def _make_strike(self, situation: Situation, shot: Shot) -> Strike:
         p = self._parameters

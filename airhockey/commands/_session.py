@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import secrets
 import shlex
 import sys
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping
@@ -147,6 +148,13 @@ def disturbances_of(given: Mapping[str, Any]) -> str:
     return from_anywhere(given["disturbances"], available())
 
 
+def agent_seed_of(given: str | None, agents: Iterable[str]) -> str | None:
+    """The secret of the agents' seeds: as typed, or drawn where somebody else's code plays."""
+    if given is not None or all(agent in AGENTS for agent in agents):
+        return given
+    return secrets.token_hex(16)
+
+
 def python_of(given: str | None) -> str | None:
     """The full path of an interpreter that can run agents; raises `ConfigurationError` for one that cannot."""
     from airhockey.evaluator.isolation.interpreters import interpreter
@@ -183,6 +191,7 @@ def game_options_of(given: Mapping[str, Any], agents: Iterable[str] = ()) -> Gam
         isolate=given["isolate"] or "auto",
         patience=given["patience"],
         real_time=real_time_of(given, agents, "tournament"),
+        agent_seed=agent_seed_of(given.get("agent_seed"), agents),
     )
 
 

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     help="Change our players' controller, as in control.solver=osqp or control.kinematics=pinocchio.",
 )
 @click.option("--episodes", type=click.IntRange(min=1), default=1000, show_default=True, help="Episodes of each task.")
-@common.options(common.seed, common.jobs, common.cluster, common.disturbances)
+@common.options(common.seed, common.agent_seed, common.jobs, common.cluster, common.disturbances)
 @click.option(
     "--interpolation-order",
     type=click.Choice(["1", "2", "3", "4", "5", "-1", "none"]),
@@ -94,7 +94,14 @@ def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
 
 
 def _options(given: dict[str, Any]) -> "Options":
-    from airhockey.commands._session import agent_of, disturbances_of, from_anywhere, python_of, real_time_of
+    from airhockey.commands._session import (
+        agent_of,
+        agent_seed_of,
+        disturbances_of,
+        from_anywhere,
+        python_of,
+        real_time_of,
+    )
     from airhockey.evaluator import Options
     from airhockey.evaluator.isolation.modes import choose
 
@@ -114,6 +121,7 @@ def _options(given: dict[str, Any]) -> "Options":
         real_time=real_time_of(given, (agent,), environments[0]),
         python=python_of(given["python"]),
         settings=given["settings"],
+        agent_seed=agent_seed_of(given["agent_seed"], (agent,)),
         parameters=None if given["parameters"] is None else from_anywhere(given["parameters"]),
     )
 

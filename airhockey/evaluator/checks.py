@@ -1,5 +1,6 @@
 """What can be said about a run's options before anything is built or written."""
 
+import re
 from pathlib import Path
 
 from airhockey.agents import AGENTS
@@ -28,6 +29,7 @@ def check_options(options: Options) -> None:
     if options.episodes < 1:
         raise ConfigurationError(f"the number of episodes must be positive, not {options.episodes}")
     check_seed(options.seed)
+    check_agent_seed(options.agent_seed)
     if options.interpolation_order not in ORDERS:
         raise unknown("interpolation order", options.interpolation_order, map(str, ORDERS))
     if options.clock not in CLOCKS:
@@ -65,6 +67,12 @@ def _check_settings(options: Options) -> None:
     parsed(options.settings)
 
 
+def check_agent_seed(secret: str | None) -> None:
+    """The secret of the agents' seeds is a hexadecimal number; raises `ConfigurationError` where it is not."""
+    if secret is not None and not re.fullmatch(r"[0-9a-f]{1,64}", secret):
+        raise ConfigurationError(f"the agents' seed must be 1 to 64 hexadecimal digits, not {secret!r}")
+
+
 def check_seed(seed: int) -> None:
     """Seeds are natural numbers; raises `ConfigurationError` where one is not."""
     if seed < 0:
@@ -91,6 +99,7 @@ def check_game_options(options: GameOptions) -> None:
         raise ConfigurationError(f"the number of steps must be positive, not {options.steps}")
     if options.clock not in CLOCKS:
         raise unknown("clock", options.clock, CLOCKS)
+    check_agent_seed(options.agent_seed)
     if options.variant not in VARIANTS:
         raise unknown("variant of the rules", options.variant, VARIANTS)
     load_disturbances(options.disturbances)

@@ -63,7 +63,7 @@ def results_below(folder: Path, site: Path) -> Iterator[Path]:
     """Folders of results, in the order of their paths; links to folders, hidden folders and the site are passed over."""
     skipped = site.resolve()
     for here, below, files in os.walk(folder):
-        if set(MANIFESTS) & set(files):
+        if any(name in MANIFESTS and not (Path(here) / name).is_symlink() for name in files):
             below.clear()
             yield Path(here)
         below[:] = sorted(
@@ -180,4 +180,4 @@ def _slug_below(folder: Path, path: Path) -> str:
 
 
 def _videos(source: Source) -> list[Path]:
-    return sorted(file for file in source.path.glob("*.mp4") if file.is_file())
+    return sorted(file for file in source.path.glob("*.mp4") if file.is_file() and not file.is_symlink())

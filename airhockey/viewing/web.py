@@ -1,7 +1,7 @@
 """MuJoCo's web viewer, on the address that was asked for and no other.
 
-The viewer listens on every interface and asks nobody for a password; it has no option for that. Imports MuJoCo's viewer: only
-where something is watched.
+The viewer listens on every interface and asks nobody for a password; it has no option for that: see
+`web_guard`. Imports MuJoCo's viewer: only where something is watched.
 """
 
 import contextlib
@@ -16,6 +16,7 @@ from mujoco.studio import launch_thread, viewer_protocol, web_viewer
 from airhockey.errors import ConfigurationError
 from airhockey.viewing.key_commands import KeyCommands
 from airhockey.viewing.panel import Panel
+from airhockey.viewing.web_guard import Guard
 
 _STARTING = 30.0  # [s] that a viewer may take to begin
 
@@ -29,7 +30,7 @@ class BoundViewer(web_viewer.WebViewer):
     """
 
     def __init__(self, host: str, *arguments: Any, **named: Any) -> None:
-        self._chosen_host = host
+        self._chosen_host, self.guard = host, Guard(host)
         super().__init__(*arguments, **named)
 
     @property
@@ -39,6 +40,11 @@ class BoundViewer(web_viewer.WebViewer):
     @_host.setter
     def _host(self, _: str) -> None:
         """MuJoCo's choice is not taken."""
+
+    def _start_server(self) -> None:
+        """Start it under guard."""
+        self.guard.watch(self.port)
+        super()._start_server()
 
     @property
     def port(self) -> int:
@@ -63,7 +69,7 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
     check_address(host)
     logging.getLogger("WebServer").setLevel(logging.WARNING)
     web_viewer._print_url_banner = lambda *_: None  # it names addresses that are not listened on
-    ports: queue.Queue[int | BaseException] = queue.Queue()
+    ports: queue.Queue[tuple[int, str] | BaseException] = queue.Queue()
 
     def target(endpoint: Any) -> None:
         config = viewer_protocol.ViewerConfig(title=title, gfx="web", http_port=port)
@@ -72,7 +78,7 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
         except BaseException as error:
             ports.put(error)
             raise
-        ports.put(viewer.port)
+        ports.put((viewer.port, viewer.guard.token))
         viewer_protocol.run_viewer_loop(viewer)
 
     commands = KeyCommands()
@@ -83,8 +89,9 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
         with contextlib.suppress(BaseException):
             handle.close()
         raise ConfigurationError(f"cannot listen on {host}:{port}: {' '.join(str(bound).split())}") from bound
-    _wait_until_it_listens(host, bound)
-    return handle, f"http://{f'[{host}]' if ':' in host else host}:{bound}/", commands
+    bound_port, token = bound
+    _wait_until_it_listens(host, bound_port)
+    return handle, f"http://{f'[{host}]' if ':' in host else host}:{bound_port}/?token={token}", commands
 
 
 def check_address(host: str) -> None:
@@ -106,7 +113,7 @@ def _wait_until_it_listens(host: str, port: int) -> None:
         time.sleep(0.02)
 
 
-def _answer(ports: "queue.Queue[int | BaseException]") -> int | BaseException:
+def _answer(ports: "queue.Queue[tuple[int, str] | BaseException]") -> tuple[int, str] | BaseException:
     try:
         return ports.get(timeout=_STARTING)
     except queue.Empty:

@@ -30,6 +30,8 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
         real_time: Pace of the steps relative to the robot's, for agents that think beside them; 0: as fast as possible.
         python: Absolute path of another interpreter for the agent's process; None for the evaluator's own.
         settings: Of our own players' controller, as in "control.solver=osqp".
+        agent_seed: Secret from which the seeds of the agent's own generators come, in hexadecimal, so that no agent can find the
+            environment's; None for seeds that follow from `seed`.
         parameters: Of the rule-based player: a name that it knows or the absolute path of a YAML file; None for its own.
     """
 
@@ -47,6 +49,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     python: str | None = None
     settings: tuple[str, ...] = ()
     parameters: str | None = None
+    agent_seed: str | None = None
 
 
 class Job(msgspec.Struct, frozen=True):

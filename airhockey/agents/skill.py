@@ -15,9 +15,6 @@ from airhockey.agents.estimation.prediction import Crossing, puck_predictor
 Array = NDArray[np.float64]
 
 
-NO_JOINTS = np.zeros(0)
-
-
 class Command(Protocol):
     """How a player's rod tip is commanded: see `JointController.move`."""
 
@@ -40,8 +37,8 @@ class Situation(NamedTuple):
         opponent: The opponent's mallet as seen, in the table frame, or None where there is no opponent. Shape (2,).
         dt: Length of a control step, in [s].
         step: Control steps since the serve; 0 at the first observation.
-        joints: Commanded joint positions before this step, in [rad], where they are known. Shape (n,).
         move: Commands the rod tip.
+        joints: Commanded joint positions before this step, in [rad]; None where nobody asks. Shape (n,).
     """
 
     puck: PuckEstimate
@@ -50,8 +47,8 @@ class Situation(NamedTuple):
     opponent: Array | None = None
     dt: float = 0.02
     step: int = 0
-    joints: Array = NO_JOINTS
     move: Command = no_command
+    joints: Array | None = None
 
     def puck_at(self, time: float) -> Array:
         """State (x, y, ẋ, ẏ, yaw rate) of the puck a time from now, in [s]. Shape (5,)."""

@@ -102,7 +102,7 @@ def situation(x: float, velocity: tuple[float, float], tip: tuple[float, float] 
     controller.reset(q)
     puck = PuckEstimate(np.array([x, 0.0, *velocity, 0.0]), np.eye(5), 0)
     return Situation(
-        puck, np.array(tip), controller.tip_velocity(), None, DT, 0, controller.state.position, controller.move
+        puck, np.array(tip), controller.tip_velocity(), None, DT, 0, controller.move, controller.state.position
     )
 
 
@@ -130,17 +130,22 @@ def situation(x: float, velocity: tuple[float, float], tip: tuple[float, float] 
 def test_the_choice_of_a_skill(
     task: str, now: str, finished: bool, committed: bool, stroke: str | None, x: float, speed: float, expected: str
 ) -> None:
-    assert choose(task, now, finished, committed, stroke, False, situation(x, (speed, 0.0))) == expected
+    assert choose(task, now, finished, committed, stroke, "repel", situation(x, (speed, 0.0))) == expected
 
 
 def test_a_puck_that_is_being_touched_is_not_shot_at() -> None:
     touching = situation(-0.5, (0.0, 0.0), tip=(-0.5 - CONTACT - 0.005, 0.0))
-    assert choose("hit", "prepare", False, False, "smash", False, touching) == "prepare"
+    assert choose("hit", "prepare", False, False, "smash", "repel", touching) == "prepare"
 
 
-def test_a_patient_player_catches_a_fast_puck() -> None:
+def test_a_puck_that_was_prepared_is_shot_at_even_where_the_mallet_touches_it() -> None:
+    touching = situation(-0.5, (0.0, 0.0), tip=(-0.5 - CONTACT - 0.005, 0.0))
+    assert choose("hit", "prepare", True, False, "smash", "repel", touching) == "smash"
+
+
+def test_a_fast_puck_gets_the_answer_that_was_chosen() -> None:
     fast = situation(0.5, (-2.5, 0.0))
-    assert choose("tournament", "ready", True, False, None, True, fast) == "defend"
+    assert choose("tournament", "ready", True, False, None, "defend", fast) == "defend"
 
 
 def test_parameters_are_checked() -> None:

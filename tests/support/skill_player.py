@@ -37,8 +37,8 @@ class SkillPlayer:
             None,
             info["dt"],
             step,
-            self.controller.state.position,
             self.controller.move,
+            self.controller.state.position,
         )
 
     def play(self, seed):

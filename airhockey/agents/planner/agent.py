@@ -27,16 +27,18 @@ from airhockey.agents.table import to_table
 WARM_UP_STEPS = 60
 """Per skill and puck."""
 EXPECTED = {
-    "open": 0.06, "corner": 0.05, "rim": 0.05, "two rims": 0.06, "slow rim": 0.06, "middling rim": 0.05,
-    "rolling corner": 0.03, "drop": 0.03,
+    "open": 0.05, "corner": 0.04, "rim": 0.05, "middling rim": 0.05, "slow rim": 0.1, "slower rim": 0.1, "slowest rim": 0.1,
+    "rolling corner": 0.03, "drop": 0.04,
 }  # fmt: skip
 """Points per try that a game begins with."""
 ANSWERS = {"repel": 0.05, "defend": 0.05}
 """The same for the answers to a puck that comes."""
-TRIES = 8.0
+TRIES = 6.0
 """How many tries these expectations are worth."""
-IN_VAIN = 0.6
-"""Time for which a stroke of the kind chosen is looked for, in [s]; then any will do."""
+IN_VAIN = 0.3
+"""Time for which a stroke of the kind chosen is looked for, in [s]; then another is chosen."""
+RETURNED = 0.3
+"""Speed towards the opponent at which a puck was knocked back, in [m]/[s]."""
 NOISE = Noise(drift_velocity=0.001, drift_share=0.002)
 """A slow puck is almost undisturbed: long averages are what makes a strike accurate."""
 
@@ -79,7 +81,8 @@ class PlannerAgent(AgentBase):
         self._outcome.serve()
         self._answered.serve()
         self._intent: str | None = None
-        self._looked, self._answer = 0.0, "defend"
+        self._vain: set[str] = set()
+        self._looked, self._answer, self._repelling = 0.0, "defend", False
         self._watch.reset()
         self._smash.forget()
         self._drop.forget()
@@ -109,11 +112,12 @@ class PlannerAgent(AgentBase):
             self._answers.tell(arm, points)
         if before == "strike" and skill.phase == "recover":
             self._outcome.struck("drop" if skill is self._drop else self._smash.kind.name)
-            if self._answer == "defend":
-                self._answered.struck("defend")
+            self._answered.struck("defend")
             self._intent = None
-        if skill.name == "repel" and before == "catch" and skill.phase != "catch":
+        self._repelling = self._repelling or (skill.name == "repel" and skill.phase == "catch")
+        if self._repelling and situation.puck.velocity[0] > RETURNED:
             self._answered.struck("repel")
+            self._repelling = False
 
     def _warm_up(self) -> None:
         """Let every skill act on some pucks: what is compiled or loaded at a first call must not be so in the game."""
@@ -139,7 +143,7 @@ class PlannerAgent(AgentBase):
         finished = before is None or before.finished
         committed = before is not None and getattr(before, "committed", False)
         if name not in ("defend", "repel"):
-            self._answer = "defend" if self._task == "hit" else self._answers.draw()
+            self._answer = "defend" if self._task == "hit" else self._answers.draw() or "defend"
         stroke = self._stroke(situation)
         skill = self._skills[choose(self._task, name, finished, committed, stroke, self._answer, situation)]
         if skill is not before:
@@ -155,13 +159,15 @@ class PlannerAgent(AgentBase):
             return "smash" if self._smash.scout(situation) is not None else None
         if situation.puck.position[0] > 0.0:
             self._intent = None
+            self._vain.clear()
             return None
         if self._intent is None:
-            self._intent, self._looked = self._strokes.draw(), 0.0
+            self._intent, self._looked = self._strokes.draw(self._vain) or OPEN.name, 0.0
         found = self._stroke_of(self._intent, situation)
         self._looked = 0.0 if found else self._looked + situation.dt
         if self._looked > IN_VAIN:
-            self._intent = OPEN.name
+            self._vain.add(self._intent)
+            self._intent = None
         return found
 
     def _stroke_of(self, intent: str, situation: Situation) -> str | None:
@@ -175,5 +181,6 @@ class PlannerAgent(AgentBase):
 
     def _situation(self, puck: PuckEstimate, tip: Array, opponent: Array | None, step: int) -> Situation:
         controller = self._controller
-        state = controller.state
-        return Situation(puck, tip, state.tip_velocity, opponent, self._dt, step, state.position, controller.move)
+        return Situation(
+            puck, tip, controller.tip_velocity(), opponent, self._dt, step, controller.move, controller.state.position
+        )

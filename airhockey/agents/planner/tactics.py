@@ -43,7 +43,9 @@ def choose(
         if now in ("defend", "repel") and not finished:
             return now
         return answer if situation.puck.speed > FAST else "defend"
-    if stroke is not None and (now != "prepare" or float(np.hypot(*(puck - situation.tip))) > CONTACT + APART):
+    if stroke is not None and (
+        finished or now != "prepare" or float(np.hypot(*(puck - situation.tip))) > CONTACT + APART
+    ):
         return stroke
     if now == "prepare" and not finished and puck[0] < OURS:
         return "prepare"

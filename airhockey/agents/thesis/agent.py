@@ -80,6 +80,7 @@ class ThesisAgent(AgentBase):
         self._watch.reset()
         self._opponent.reset()
         self._machine.reset()
+        self._switcher.reset()
         self._first = True
 
     def draw_action(self, observation: Array) -> Array:

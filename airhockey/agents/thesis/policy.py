@@ -83,5 +83,5 @@ def enough_space(puck_position: Array, side_tolerance: float = 0.0, end_toleranc
         end_tolerance: The same at the short borders, where it differs: room to take a run-up.
     """
     end = side_tolerance if end_tolerance is None else end_tolerance
-    x, y = float(puck_position[0]), float(puck_position[1])
-    return HALF_LENGTH - end - abs(x) >= TOLERANCE and HALF_WIDTH - side_tolerance - abs(y) >= TOLERANCE
+    x, y = puck_position.tolist()
+    return bool(HALF_LENGTH - end - abs(x) >= TOLERANCE and HALF_WIDTH - side_tolerance - abs(y) >= TOLERANCE)

@@ -50,6 +50,7 @@ class PrepareParameters:
         clearance: Gap that is kept from the puck's way while waiting, in [m].
         retreat: Distance to the puck at which the task is finished, in [m].
         longest_push: Steps after which a push is over even if nothing was felt.
+        longest_adjustment: Steps after which the push starts wherever the mallet has got to: an aim may be out of its reach.
     """
 
     theta: tuple[float, ...] = field(metadata={"length": 3})
@@ -69,6 +70,7 @@ class PrepareParameters:
     clearance: float
     retreat: float
     longest_push: float
+    longest_adjustment: float = 10000.0
 
 
 def correction(beta: float, y_puck: float, aim: float = 90.0) -> float:
@@ -156,7 +158,8 @@ class PreparePolicy:
         target = cartesian(puck, Polar(here.beta - _side(puck) * turn, radius))
         if now.puck.speed >= 2.0 * p.wait_speed:
             return Move(now.tip, finished=True)
-        if abs(off) < p.aligned and here.radius < p.stand_off + 0.01:
+        arrived = abs(off) < p.aligned and here.radius < p.stand_off + 0.01
+        if arrived or self._t_phase > p.longest_adjustment:
             self._enter("acceleration")
         return Move(limited_step(now.tip, target, p.longest_step))
 

@@ -49,14 +49,14 @@ class Contacts(NamedTuple):
         gaps: Negative where they overlap, in [m]. Shape (3,).
         moving: Velocity of what it touches, in [m]/[s]. Shape (3, 2).
         mallet: Whether the first is the mallet's.
-        active: How many of the rows count.
+        rows: How many of the rows count.
     """
 
     normals: Array
     gaps: Array
     moving: Array
     mallet: bool
-    active: int
+    rows: int
 
 
 @compiled

@@ -4,6 +4,8 @@ Every arm has a Beta belief about its points per try; each time the arm is playe
 one generator with a fixed seed, so that a game depends on nothing but itself.
 """
 
+from collections.abc import Collection
+
 import numpy as np
 
 SEED = 5
@@ -28,9 +30,10 @@ class Arms:
         self._expected, self._weight = expected, weight
         self._rng = np.random.default_rng(SEED)
 
-    def draw(self) -> str:
-        """The arm to play next."""
-        return max(self.points, key=self._sample)
+    def draw(self, without: Collection[str] = ()) -> str | None:
+        """The arm to play next, but for those that cannot be played now; None where no other is left."""
+        left = [arm for arm in self.points if arm not in without]
+        return max(left, key=self._sample) if left else None
 
     def tell(self, arm: str, points: float) -> None:
         """What a try of an arm has brought: 1 for a goal, a third for a fault of the opponent's, 0 for nothing."""

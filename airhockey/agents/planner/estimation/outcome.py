@@ -16,9 +16,12 @@ class Outcome:
         self._last: str | None = None
         self._since, self._x = 0.0, 0.0
         self._served = False
+        self._failed: list[str] = []
 
     def struck(self, arm: str) -> None:
-        """The puck was played just now."""
+        """The puck was played just now: the stroke before has brought nothing."""
+        if self._arm is not None:
+            self._failed.append(self._arm)
         self._arm = self._last = arm
         self._since = 0.0
 
@@ -31,7 +34,8 @@ class Outcome:
 
         After a serve the puck lies on the side that has conceded, or that has not committed the fault.
         """
-        before, self._x, told = self._x, x, []
+        before, self._x = self._x, x
+        told, self._failed = [(arm, 0.0) for arm in self._failed], []
         self._since += dt
         if self._served:
             self._served = False

@@ -32,8 +32,11 @@ KINDS = (
     OPEN,
     Kind("corner", 0, FULL, 0.05, False),
     Kind("rim", 1, FULL, 0.0, False),
-    Kind("two rims", 2, FULL, 0.0, False),
-    Kind("slow rim", 1, 1.0, 0.0, False),
-    Kind("middling rim", 1, 1.35, 0.0, False),
+    Kind("middling rim", 1, 1.4, 0.0, False),
+    Kind("slow rim", 1, 1.2, 0.04, False),
+    Kind("slower rim", 1, 1.12, 0.04, False),
+    Kind("slowest rim", 1, 1.04, 0.02, False),
     Kind("rolling corner", 0, 0.92, 0.06, False),
 )
+"""Those of a game. The slow ones come in by the rim with little left of their speed: who foresees no bounce goes the wrong
+way first, and who does must wait."""

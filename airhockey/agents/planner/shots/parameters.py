@@ -19,6 +19,7 @@ class SmashParameters:
         turn: By which share of its sine a strike is commanded further from the x axis: the arm's systematic error.
         speed_places: x of the contact, in the table frame, in [m], ascending.
         speeds: Mallet speed that the arm reaches there, in [m]/[s]; linear between the places.
+        diagonal: By what share a stroke across is faster than one along x: times the square of its direction's sine.
         least_speed: Below this no stroke is worth it, in [m]/[s].
         acceleration, braking: Of the mallet in a stroke, in [m]/[s²].
         steady: Time at full speed before the contact, in [s].
@@ -76,6 +77,7 @@ class SmashParameters:
     approach_acceleration: float
     approach_margin: float
     clearance: float
+    diagonal: float = 0.0
     posture: tuple[float, ...] = ()
     posture_gain: float = 0.0
 

@@ -145,6 +145,7 @@ def search(
         else:
             wait, wall = best.wait + 0.1 * (u - 0.5), best.wall
             aim = best.aim + 0.05 * (v - 0.5)
+            aim = (1.0 if aim > 0.0 else -1.0) * max(abs(aim), lowest)
         if wait > horizon or wait < 0.0:
             continue
         puck = state_at(path, path_step, wait)

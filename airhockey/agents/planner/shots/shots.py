@@ -88,6 +88,8 @@ def judge(
     target = aim if rims == 0 else mirrored(aim, wall * model.wall, rims, model.restitution)
     speed = float(np.interp(puck[0] - model.contact, model.speed_places, model.speeds))
     leaving = pace + model.motion[_DECAY] * (model.goal_line - puck[0] - WAY)
+    way_x, way_y = model.goal_line - puck[0], target - puck[1]
+    speed *= 1.0 + model.diagonal * way_y * way_y / (way_x * way_x + way_y * way_y)
     speed = min(speed, (leaving + (model.gain - 1.0) * puck[2]) / model.gain)
     normal = _towards(puck, target, speed, model)
     room = room_speed(puck[:2] - model.contact * normal, normal, model)

@@ -73,9 +73,9 @@ class Striker:
 
     def _anchor(self, situation: Situation) -> Array | None:
         """What draws the joints to the stroke's posture; None where it has none. Shape (n,)."""
-        if len(self._posture) == 0:
-            return None
         q = situation.joints
+        if q is None or len(self._posture) == 0:
+            return None
         return np.asarray(q + self._parameters.posture_gain * (self._posture - q))
 
     def _make_strike(self, situation: Situation, shot: Shot) -> Strike:

@@ -20,7 +20,7 @@ from airhockey.agents.planner.skills.prepare import Prepare
 from airhockey.agents.planner.skills.ready import Ready
 from airhockey.agents.planner.skills.repel import Repel
 from airhockey.agents.planner.skills.smash import Smash
-from airhockey.agents.planner.tactics import choose
+from airhockey.agents.planner.tactics import Playing, choose
 from airhockey.agents.skill import Situation, Skill
 from airhockey.agents.table import to_table
 
@@ -142,10 +142,11 @@ class PlannerAgent(AgentBase):
         name = before.name if before is not None else "ready"
         finished = before is None or before.finished
         committed = before is not None and getattr(before, "committed", False)
+        playing = Playing(name, finished, committed)
         if name not in ("defend", "repel"):
             self._answer = "defend" if self._task == "hit" else self._answers.draw() or "defend"
         stroke = self._stroke(situation)
-        skill = self._skills[choose(self._task, name, finished, committed, stroke, self._answer, situation)]
+        skill = self._skills[choose(self._task, playing, stroke, self._answer, situation)]
         if skill is not before:
             skill.begin(situation)
             self._skill = skill

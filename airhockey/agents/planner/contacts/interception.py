@@ -81,7 +81,7 @@ class CatchCost(NamedTuple):
     loyalty: float
     lead: float
     follow: float
-    grip: bool
+    grip: bool = True
 
 
 class PuckPath(NamedTuple):

@@ -46,21 +46,24 @@ DOUBTS = np.array(
 _RESTITUTION = 5  # place in the constants of `PuckMotion`
 
 
+_UNKNOWN = np.zeros(2)  # until it is known who plays
+
+
 class Goal(NamedTuple):
-    """What a push shall achieve, and with what means.
+    """What a push shall achieve (from `prepare.yaml`), and with what means (the robot's).
 
     Attributes:
         near_x, far_x, wide_y: The good places: x between the first two, |y| up to the third, in [m].
         slow: Largest ẋ with which the puck may come to the long axis, in [m]/[s].
         middle: How close to it the puck ends the task, in [m].
         margin: Distance to the border of the good places beyond which more is no better, in [m].
-        lower, upper: Where the mallet may be, in [m]. Shape (2,).
-        speed, acceleration: Largest along x and y, in [m]/[s] and [m]/[s²]. Shape (2,).
-        friction: μ between mallet and puck.
         doubt: How wrong the puck's place may be, in [m].
         haste: How wrong the mallet's speed may be, as a share.
         rim, rebound: How wrong the rims' damping ratio and restitution may be, as shares.
         horizon: For how long the puck may roll, in [s].
+        lower, upper: Where the mallet may be, in [m]. Shape (2,).
+        speed, acceleration: Largest along x and y, in [m]/[s] and [m]/[s²]. Shape (2,).
+        friction: μ between mallet and puck.
     """
 
     near_x: float
@@ -69,16 +72,16 @@ class Goal(NamedTuple):
     slow: float
     middle: float
     margin: float
-    lower: Array
-    upper: Array
-    speed: Array
-    acceleration: Array
-    friction: float
     doubt: float
     haste: float
     rim: float
     rebound: float
     horizon: float
+    lower: Array = _UNKNOWN
+    upper: Array = _UNKNOWN
+    speed: Array = _UNKNOWN
+    acceleration: Array = _UNKNOWN
+    friction: float = 1.0
 
 
 @compiled

@@ -34,33 +34,6 @@ class ReachParameters:
 
 
 @dataclass(frozen=True)
-class WishParameters:
-    """See `interception.CatchCost`."""
-
-    near_x: float
-    far_x: float
-    best_x: float
-    place: float
-    deep_x: float
-    deep: float
-    speed: float
-    effort: float
-    easy: float
-    bounce: float
-    settle: float
-    sudden: float
-    rest_x: float
-    standstill: float
-    push: float
-    return_speed: float
-    return_share: float
-    mouth: float
-    loyalty: float
-    lead: float
-    follow: float
-
-
-@dataclass(frozen=True)
 class DefendParameters:
     """What can be tuned about the defence: `defend.yaml` beside this module.
 
@@ -83,7 +56,7 @@ class DefendParameters:
 
     iiwa: ReachParameters
     planar: ReachParameters
-    wish: WishParameters
+    wish: CatchCost
     horizon: float
     too_hard: float
     every: int
@@ -130,7 +103,7 @@ class Defend:
         self._reach = Reach(
             np.array(means.speed), np.array(means.acceleration), to_table(workspace.lower), to_table(workspace.upper)
         )
-        self._wish = CatchCost(**vars(p.wish), grip=spec_of(env_info).n_joints == 7)
+        self._wish = p.wish._replace(grip=spec_of(env_info).n_joints == 7)
         self._constants = puck_motion().constants
         self._steps = round(p.horizon / STEP)
         self._meeting: Meeting | None = None

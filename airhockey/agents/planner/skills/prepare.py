@@ -24,23 +24,6 @@ from airhockey.agents.table import CONTACT, to_table
 
 
 @dataclass(frozen=True)
-class GoalParameters:
-    """See `push_search.Goal`."""
-
-    near_x: float
-    far_x: float
-    wide_y: float
-    slow: float
-    middle: float
-    margin: float
-    doubt: float
-    haste: float
-    rim: float
-    rebound: float
-    horizon: float
-
-
-@dataclass(frozen=True)
 class PrepareParameters:
     """What can be tuned: `prepare.yaml` beside this module.
 
@@ -64,7 +47,7 @@ class PrepareParameters:
         drift: How far the puck may turn out to lie elsewhere than thought, in [m]; beyond, it is thought again.
     """
 
-    goal: GoalParameters
+    goal: Goal
     speed: tuple[float, ...]
     acceleration: tuple[float, ...]
     still: float
@@ -109,8 +92,7 @@ class Prepare:
         workspace = Workspace.of(env_info)
         self._lower, self._upper = to_table(workspace.lower), to_table(workspace.upper)
         self._upper[0] = min(self._upper[0], -0.1)
-        self._goal = Goal(
-            **vars(p.goal),
+        self._goal = p.goal._replace(
             lower=self._lower,
             upper=self._upper,
             speed=np.array(p.speed),

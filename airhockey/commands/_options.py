@@ -19,7 +19,7 @@ robot = click.option(
 env = click.option("--env", metavar="NAME", help="Task and robot in one name, as in 7dof-prepare.")
 
 
-class Seed(click.ParamType):
+class Seed(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic since click 8.4
     """A natural number, or "random" for one of 128 bits that nobody can guess."""
 
     name = "seed"
@@ -79,6 +79,20 @@ patience = click.option(
     metavar="SECONDS",
     help="How long to wait for an isolated or remote agent before it is stopped.",
 )
+real_time = click.option(
+    "--real-time",
+    type=click.FloatRange(min=0.0),
+    is_flag=False,
+    flag_value=1.0,
+    metavar="[FACTOR]",
+    help="Pace the steps: 1 as the robot, 2 twice as fast, 0 as fast as possible."
+    "  [default: 1 for submissions that think in threads or processes beside their steps, else 0]",
+)
+python = click.option(
+    "--python",
+    metavar="PATH",
+    help="Another interpreter for a submission's process: Python 3.8 to 3.14 with NumPy and what the agent needs.",
+)
 out = click.option("--out", metavar="FOLDER", help="Run folder.  [default: a new one under runs/]")
 resume = click.option("--resume", is_flag=True, help="Continue the run in --out; its options need not be repeated.")
 as_json = click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object, and nothing else.")
@@ -107,9 +121,10 @@ variant = click.option(
 )
 
 ISOLATION = (isolate, patience)
+PLAY = (*ISOLATION, real_time)
 VIEWER = (host, port, no_browser, window)
 RUN = (out, resume, quiet)
-GAMES = (game_steps, seed, agent_seed, jobs, cluster, disturbances, clock, variant, *ISOLATION, *RUN, as_json)
+GAMES = (game_steps, seed, agent_seed, jobs, cluster, disturbances, clock, variant, *PLAY, *RUN, as_json)
 
 
 def options(*added: Option) -> Option:

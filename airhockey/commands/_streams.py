@@ -70,7 +70,7 @@ def be_patient() -> None:
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
     if not isinstance(sys.stderr, Patient):
-        sys.stderr = Patient(sys.stderr)  # type: ignore[assignment]
+        sys.stderr = Patient(sys.stderr)
 
 
 def leave() -> str | None:

@@ -82,13 +82,15 @@ class Environment(Copyable):
     | 6+2n … 8+2n | opponent's rod tip x, y, z (scenes with two robots) | m |
 
     Args:
-        name: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare" or "tournament".
+        name: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare" or "tournament"; in the edition of 2025
+            "hit", "hit_single", "defend", "prepare" or "tournament" (or "7dof-hit", "7dof-hit_single" and so on).
         interpolation_order: 1, 2, 3, 4, 5, -1 or None; in the tournament also a pair of them.
         disturbances: A profile's name, the path of a YAML file, or a profile.
         edition_name: The year whose rules apply.
         visual: Draw the arms' links, for viewers; physics is the same.
 
     Attributes:
+        name: The environment's name in its edition.
         env_info: What agents are built with.
         horizon: Control steps in an episode.
         dt: Length of a control step, in [s].
@@ -113,7 +115,7 @@ class Environment(Copyable):
         self.edition: Edition = edition(edition_name)
         rules = self.edition.environment(name)
         robot = ROBOTS[rules.robot]
-        self.name = name
+        self.name = name = self.edition.official_name(name)
         self.disturbances = load_disturbances(disturbances)
         self.n_agents = rules.robots
         self.task = task(rules.kind)
@@ -132,6 +134,7 @@ class Environment(Copyable):
             np.array(codes, dtype=np.int64),
             rules.opponent == "figure_of_eight",
             visual,
+            self.edition.scene,
         )
         self.env_info = make_env_info(name, self.simulation, self.edition, self.horizon)
         self.constraint_slices = constraint_slices(self.simulation.arm)
@@ -297,23 +300,21 @@ class Environment(Copyable):
         kept = {
             name: value for name, value in self.__dict__.items() if name not in ("task", "game", "_played", "_slots")
         }
-        robot = self.env_info["robot"] | {"robot_model": None, "robot_data": None}
-        return kept | {"env_info": self.env_info | {"robot": robot}, "_episode": None, "_start_is_own": True}
+        return kept | {"_episode": None, "_start_is_own": True}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
         self.task = task(self.edition.environment(self.name).kind)
-        self.env_info["robot"]["robot_model"] = self.simulation.robot_model
-        self.env_info["robot"]["robot_data"] = self.simulation.robot_data
         self._make_views()
 
     def __deepcopy__(self, memo: dict[int, Any]) -> "Environment":
-        simulation, constraints = self.simulation, self.env_info["constraints"]
-        constant = [self.edition, self.disturbances, self.formats, self._starts, self.constraint_slices, constraints]
+        simulation = self.simulation
+        constant = [self.edition, self.disturbances, self.formats, self._starts, self.constraint_slices]
         constant += [simulation.robot, simulation.arm, simulation.robot_model]
         if self.disturbances.mismatch == Mismatch():
             constant.append(simulation.model)
         memo.update({id(shared): shared for shared in constant})
+        memo[id(simulation.robot_data)] = simulation.copy_robot_data()  # MuJoCo's own would copy the model, too
         twin = memo[id(self)] = object.__new__(type(self))
         twin.__setstate__(copy.deepcopy(self.__getstate__(), memo))
         return twin

@@ -1,4 +1,4 @@
-"""The tasks as Gymnasium environments: `airhockey/3dof-hit-v0`, `airhockey/7dof-defend-v0` and so on.
+"""The tasks as Gymnasium environments: `airhockey/3dof-hit-v0`, `airhockey/7dof-defend-v0`, `airhockey2025/hit-v0` and so on.
 
     import airhockey.envs.gymnasium
     import gymnasium
@@ -32,8 +32,12 @@ from airhockey.envs.tasks.reward import RewardedState
 Array = NDArray[np.float64]
 Reward = Callable[[Any, Array, Any, Array, bool], float]
 
-NAMESPACE = "airhockey"
-TASKS = ("3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare")
+NAMESPACES = {"2023": "airhockey", "2025": "airhockey2025"}
+"""First part of an id, by edition."""
+TASKS = {
+    "2023": ("3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare"),
+    "2025": ("hit", "hit_single", "defend", "prepare"),
+}
 
 
 class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
@@ -44,12 +48,14 @@ class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
     restored as `airhockey.envs.Environment` can.
 
     Args:
-        name: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend" or "7dof-prepare".
+        name: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend" or "7dof-prepare"; in the edition of 2025 "hit",
+            "hit_single", "defend" or "prepare".
         interpolation_order: 1, 2, 3, 4, 5, -1 or None.
         disturbances: A profile's name, the path of a YAML file, or a profile.
         reward: Called with (environment, state, action, next state, absorbing) after each step; the states are base
             observations in world coordinates, as for the official wrapper's `custom_reward_function`. Without one the
             reward is `success` at the end of an episode and 0 before.
+        edition: The year whose rules apply.
 
     Attributes:
         environment: The challenge environment behind it.
@@ -63,8 +69,9 @@ class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
         interpolation_order: Order = 3,
         disturbances: Any = "ideal",
         reward: Reward | None = None,
+        edition: str = "2023",
     ) -> None:
-        self.environment = Environment(name, interpolation_order, disturbances)
+        self.environment = Environment(name, interpolation_order, disturbances, edition)
         seen = self.environment.env_info["rl_info"].observation_space.shape
         self.observation_space = spaces.Box(-np.inf, np.inf, seen, np.float64)
         low, high = self.environment.formats[0].limits(self.environment.simulation.robot)
@@ -110,10 +117,12 @@ class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
 
 def register() -> None:
     """Register every task with Gymnasium, once."""
-    for name in TASKS:
-        id_ = f"{NAMESPACE}/{name}-v0"
-        if id_ not in gymnasium.registry:
-            gymnasium.register(id_, entry_point=f"{__name__}:AirHockeyEnv", kwargs={"name": name}, order_enforce=True)
+    for edition, names in TASKS.items():
+        for name in names:
+            id_ = f"{NAMESPACES[edition]}/{name}-v0"
+            if id_ not in gymnasium.registry:
+                made = {"name": name, "edition": edition}
+                gymnasium.register(id_, entry_point=f"{__name__}:AirHockeyEnv", kwargs=made, order_enforce=True)
 
 
 register()

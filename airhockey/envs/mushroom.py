@@ -85,7 +85,8 @@ class BaseEnvironment(Copyable):
 
 
 class AirHockeyChallengeWrapper(Copyable, Environment):
-    """The environment as agents of the 2023 challenge know it.
+    """The environment as agents of the challenge know it: `AirHockeyChallengeWrapper("7dof-hit")`, or of the edition of 2025
+    `AirHockeyChallengeWrapper("hit", edition="2025")`.
 
     It can be copied, pickled, saved and restored as `airhockey.envs.Environment` can, with the same future. Starts come from
     NumPy's global generator, as in the official package; but a copy, and a wrapper that went back to a saved moment, must
@@ -93,7 +94,7 @@ class AirHockeyChallengeWrapper(Copyable, Environment):
     global one was in when it was copied or saved.
 
     Args:
-        env: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare" or "tournament".
+        env: An environment's name in its edition; see `airhockey.envs.Environment`.
         custom_reward_function: Called with (base environment, state, action, next state, absorbing) after each step; the
             states are base observations, in world coordinates.
         interpolation_order: 1, 2, 3, 4, 5, -1 or None; in the tournament also a pair of them.
@@ -102,7 +103,7 @@ class AirHockeyChallengeWrapper(Copyable, Environment):
     Attributes:
         base_env: Has `model`, `data`, `env_info` and `init_state`.
         env_info: What agents are built with.
-        env_name: The name given.
+        env_name: The environment's name in its edition.
     """
 
     def __init__(
@@ -118,7 +119,7 @@ class AirHockeyChallengeWrapper(Copyable, Environment):
         if isinstance(interpolation_order, list):
             interpolation_order = tuple(interpolation_order)
         self._env = ChallengeEnvironment(env, interpolation_order, disturbances, edition, visual)
-        self.env_name = env
+        self.env_name = self._env.name
         self.env_info = self._env.env_info
         self.env_info["rl_info"] = _mdp_info(self.env_info["rl_info"])
         self.base_env = BaseEnvironment(self._env, self.env_info)

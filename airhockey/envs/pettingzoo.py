@@ -1,4 +1,4 @@
-"""A game of two as a PettingZoo environment: `airhockey/tournament-v0`, a parallel one.
+"""A game of two as a PettingZoo environment: `airhockey/tournament-v0` or `airhockey2025/tournament-v0`, a parallel one.
 
 import airhockey.envs.pettingzoo
 import pettingzoo
@@ -27,7 +27,7 @@ from airhockey.envs.environment import Environment, Order
 from airhockey.envs.tasks.game import points_reward
 
 Array = NDArray[np.float64]
-ID = "airhockey/tournament-v0"
+IDS = {"2023": "airhockey/tournament-v0", "2025": "airhockey2025/tournament-v0"}
 PLAYERS = ("home", "away")
 
 
@@ -43,20 +43,22 @@ class TournamentEnv(Copyable, pettingzoo.ParallelEnv[str, Array, Array]):
         interpolation_order: 1, 2, 3, 4, 5, -1 or None, or a pair of them.
         disturbances: A profile's name, the path of a YAML file, or a profile.
         max_cycles: Length of the game in control steps, if not the rules'.
+        edition: The year whose rules apply.
 
     Attributes:
         environment: The challenge environment behind it.
     """
 
-    metadata = {"name": ID, "render_modes": []}  # noqa: RUF012 - PettingZoo's own way to say so
+    metadata = {"name": IDS["2023"], "render_modes": []}  # noqa: RUF012 - PettingZoo's own way to say so
 
     def __init__(
         self,
         interpolation_order: Order | tuple[Order, Order] = 3,
         disturbances: Any = "ideal",
         max_cycles: int | None = None,
+        edition: str = "2023",
     ) -> None:
-        self.environment = Environment("tournament", interpolation_order, disturbances)
+        self.environment = Environment("tournament", interpolation_order, disturbances, edition)
         self.possible_agents = list(PLAYERS)
         self.agents: list[str] = []
         self.render_mode = None
@@ -132,9 +134,10 @@ def _box(form: ActionFormat, robot: Any) -> spaces.Box:
 
 
 def register() -> None:
-    """Register the game with PettingZoo, once."""
-    if ID not in pettingzoo.parallel_registry:
-        pettingzoo.register("parallel", ID, f"{__name__}:TournamentEnv")
+    """Register the games with PettingZoo, once."""
+    for edition, id_ in IDS.items():
+        if id_ not in pettingzoo.parallel_registry:
+            pettingzoo.register("parallel", id_, f"{__name__}:TournamentEnv", kwargs={"edition": edition})
 
 
 register()

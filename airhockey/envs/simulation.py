@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from airhockey.envs import scene
 from airhockey.envs.copying import Copyable
+from airhockey.envs.editions import Scene
 from airhockey.envs.kernel.arm import Arm, arm_from_model
 from airhockey.envs.kernel.control_step import BAD_ACTION, DONE, Players, control_step
 from airhockey.envs.kernel.controller import Controller, filter_velocity, new_controller
@@ -46,6 +47,7 @@ class Simulation(Copyable):
         orders: Interpolation order of each robot, as compiled code wants it. Shape (n_robots,).
         moving_opponent: Robot 2 follows the figure of eight.
         visual: Draw the arms' links.
+        edition_scene: What is particular to the edition's scene.
 
     Attributes:
         model, data: MuJoCo's. Changing them changes the simulation.
@@ -61,10 +63,12 @@ class Simulation(Copyable):
         orders: NDArray[np.int64],
         moving_opponent: bool = False,
         visual: bool = False,
+        edition_scene: Scene | None = None,
     ) -> None:
         self.robot, self.n_robots = robot, n_robots
-        self.model = scene.game_model(robot, n_robots, visual)
+        self.model = scene.game_model(robot, n_robots, visual, edition_scene)
         self.robot_model = scene.robot_model(robot)
+        self.robot_data = mujoco.MjData(self.robot_model)
         data = mujoco.MjData(self.model)
         self.arm: Arm = arm_from_model(robot, self.robot_model)
         n = robot.n_joints
@@ -79,7 +83,7 @@ class Simulation(Copyable):
             work_space(n),
             Opponent(np.zeros(1), np.zeros(n), np.zeros(3)),
         )
-        self._bind(data, mujoco.MjData(self.robot_model))
+        self._bind(data)
         self._start = np.tile(np.array(robot.start), (n_robots, 1))
         self._striker_start = [self._level_striker(row) for row in self._start] if self.arm.universal_joint else []
         self.reset(np.zeros(3), np.zeros(3))
@@ -171,21 +175,26 @@ class Simulation(Copyable):
 
     def __getstate__(self) -> dict[str, Any]:
         """Everything but addresses, views and MuJoCo's data, whose content is added."""
-        views = ("data", "robot_data", "_physics", "_controller", "_work", "_opponent", "_plant", "_remembered")
+        views = ("data", "_physics", "_controller", "_work", "_opponent", "_plant", "_remembered")
         kept = {name: value for name, value in self.__dict__.items() if name not in views}
-        return kept | {"saved": (self._physics.save(), Physics(self.robot_data).save())}
+        return kept | {"_saved": self._physics.save()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         state = dict(state)
-        moment, alone = state.pop("saved")
+        saved = state.pop("_saved")
         self.__dict__.update(state)
-        self._bind(mujoco.MjData(self.model), mujoco.MjData(self.robot_model))
-        self._physics.restore(moment)
-        Physics(self.robot_data).restore(alone)
+        self._bind(mujoco.MjData(self.model))
+        self._physics.restore(saved)
 
-    def _bind(self, data: Any, robot_data: Any) -> None:
+    def copy_robot_data(self) -> Any:
+        """The robot-only model's data, copied, for the same model."""
+        data = mujoco.MjData(self.robot_model)
+        mujoco.mj_copyData(data, self.robot_model, self.robot_data)
+        return data
+
+    def _bind(self, data: Any) -> None:
         """Simulate with this data: make every address and view anew."""
-        self.data, self.robot_data = data, robot_data
+        self.data = data
         self._physics = Physics(data)
         addresses = addresses_of(self.model, data)._asdict()
         for name, address in addresses.items():

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 from airhockey.agents import AGENTS
+from airhockey.agents.control.parameters import parsed
 from airhockey.agents.submission import is_submission, submission_config
 from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.envs.disturbances import load_disturbances
@@ -40,6 +41,7 @@ def check_options(options: Options) -> None:
     load_disturbances(options.disturbances)
     check_agent(options.agent, options.environments)
     _check_parameters(options)
+    _check_settings(options)
     choose(options.agent, options.isolate)
     if options.patience <= 0.0:
         raise ConfigurationError(f"the patience must be positive, not {options.patience:g} s")
@@ -54,6 +56,15 @@ def _check_parameters(options: Options) -> None:
             f"agent {options.agent!r} reads no parameter file; those that do: {', '.join(RULE_BASED)}"
         )
     thesis_parameters(options.parameters)
+
+
+def _check_settings(options: Options) -> None:
+    """Only our own players have this controller, and it must have these parameters."""
+    if options.settings and options.agent not in AGENTS:
+        raise ConfigurationError(
+            f"--set is for the players of airhockey ({', '.join(AGENTS)}), not for {options.agent!r}"
+        )
+    parsed(options.settings)
 
 
 def check_agent_seed(secret: str | None) -> None:

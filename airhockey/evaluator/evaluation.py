@@ -110,7 +110,6 @@ def _task_result(path: Path, options: Options, env: str, records: list[EpisodeRe
         penalty=verdict.penalty,
         deployability=verdict.deployability,
         violations=verdict.violations,
-        late=verdict.late,
         computation_time=_run_time(read_steps(path / TRAJECTORIES, env, "computation_time")),
         agent_errors=verdict.failures,
     )

@@ -14,7 +14,7 @@ from typing import Any
 from mujoco.studio import launch_thread, viewer_protocol, web_viewer
 
 from airhockey.errors import ConfigurationError
-from airhockey.viewing.key_commands import Ears
+from airhockey.viewing.key_commands import KeyCommands
 from airhockey.viewing.panel import Panel
 from airhockey.viewing.web_guard import Guard
 
@@ -52,7 +52,7 @@ class BoundViewer(web_viewer.WebViewer):
         return int(self._http_port)
 
 
-def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any, str, Ears]:
+def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any, str, KeyCommands]:
     """Start the viewer in a thread of its own.
 
     Args:
@@ -61,7 +61,7 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
         host, port: To listen on; port 0 for the first free one from 8080.
 
     Returns:
-        MuJoCo's handle, the page's address, and what hears the panel.
+        MuJoCo's handle, the page's address, and what collects commands.
 
     Raises:
         ConfigurationError: The address cannot be listened on.
@@ -81,8 +81,8 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
         ports.put((viewer.port, viewer.guard.token))
         viewer_protocol.run_viewer_loop(viewer)
 
-    ears = Ears()
-    handle = launch_thread.launch_thread(target, sim_plugins=[ears])
+    commands = KeyCommands()
+    handle = launch_thread.launch_thread(target, sim_plugins=[commands])
     handle.model, handle.data = model, data
     bound = _answer(ports)
     if isinstance(bound, BaseException):
@@ -91,7 +91,7 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
         raise ConfigurationError(f"cannot listen on {host}:{port}: {' '.join(str(bound).split())}") from bound
     bound_port, token = bound
     _wait_until_it_listens(host, bound_port)
-    return handle, f"http://{f'[{host}]' if ':' in host else host}:{bound_port}/?token={token}", ears
+    return handle, f"http://{f'[{host}]' if ':' in host else host}:{bound_port}/?token={token}", commands
 
 
 def check_address(host: str) -> None:

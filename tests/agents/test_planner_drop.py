@@ -1,4 +1,4 @@
-"""The drop: the puck dies where it should; and the evidence that calls for it."""
+"""The drop: the puck dies where it should."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,6 @@ import pytest
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.motion import advance, puck_motion
 from airhockey.agents.planner.estimation.rest_prediction import RestPrediction
-from airhockey.agents.planner.estimation.shot_statistics import FLIGHT, PATIENCE, ShotStatistics
 from airhockey.agents.planner.shots.parameters import smash_parameters
 from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
 from airhockey.agents.planner.skills.dead_puck import GAIN, PLACE, roll
@@ -42,40 +41,6 @@ def test_a_drop_needs_time_to_get_behind_the_puck(model: ShotModel) -> None:
 
 def test_a_puck_beyond_reach_cannot_be_dropped(model: ShotModel) -> None:
     assert roll(np.array([0.1, 0.0, 0.0, 0.0, 0.0]), 2.0, PLACE, GAIN, TIP, 0.0, model).value == 0.0
-
-
-def pass_time(record: ShotStatistics, seconds: float) -> None:
-    for _ in range(round(seconds / DT)):
-        record.wait(DT)
-
-
-def test_shots_that_come_back_are_futile_in_the_end() -> None:
-    record = ShotStatistics()
-    for k in range(PATIENCE):
-        assert not record.futile, k
-        record.struck()
-        pass_time(record, FLIGHT + 0.1)
-    assert record.futile and record.failed == PATIENCE
-
-
-def test_a_serve_soon_after_a_shot_is_a_goal_and_gives_new_courage() -> None:
-    record = ShotStatistics()
-    for _ in range(PATIENCE):
-        record.struck()
-        pass_time(record, FLIGHT + 0.1)
-    record.struck()
-    pass_time(record, 1.5)
-    record.serve()
-    assert record.scored == 1 and not record.futile
-
-
-def test_a_serve_without_a_shot_says_nothing() -> None:
-    record = ShotStatistics()
-    record.serve()
-    record.struck()
-    pass_time(record, FLIGHT + 0.1)
-    record.serve()
-    assert (record.scored, record.failed) == (0, 1)
 
 
 @pytest.mark.parametrize("damping", [0.4, 0.5, 0.6])

@@ -12,6 +12,7 @@ from airhockey.agents.planner.estimation.opponent import OpponentTrack, figure_o
 from airhockey.agents.planner.motion.strike import run_up
 from airhockey.agents.planner.shots.aiming import after_strike, mirrored, strike_normal
 from airhockey.agents.planner.shots.flight import FLIGHT_STEP, coast, fly
+from airhockey.agents.planner.shots.kinds import OPEN
 from airhockey.agents.planner.shots.parameters import smash_parameters
 from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
 from airhockey.agents.planner.shots.shots import Shot, judge, room_speed, turned
@@ -32,7 +33,7 @@ def model() -> ShotModel:
 def shot_at(
     model: ShotModel, puck: list[float], aim: float = 0.0, wall: float = 0.0, opponent: np.ndarray = NOBODY
 ) -> Shot:
-    return judge(np.array(puck), 3.0, aim, wall, TIP, opponent, 0.0, 0.0, model)
+    return judge(np.array(puck), 3.0, aim, wall, TIP, opponent, 0.0, 0.0, OPEN.pace, OPEN.heeds, model)
 
 
 def test_a_puck_at_rest_leaves_along_the_normal() -> None:
@@ -56,15 +57,23 @@ def test_the_puck_leaves_in_the_wanted_direction() -> None:
 
 
 def test_the_mirror_of_an_elastic_wall_is_the_mirror_image() -> None:
-    assert mirrored(0.1, 0.5, 1.0) == pytest.approx(0.9)
-    assert mirrored(0.1, -0.5, 1.0) == pytest.approx(-1.1)
+    assert mirrored(0.1, 0.5, 1, 1.0) == pytest.approx(0.9)
+    assert mirrored(0.1, -0.5, 1, 1.0) == pytest.approx(-1.1)
 
 
-def test_a_puck_aimed_at_the_mirrored_target_arrives_at_the_target() -> None:
-    start, wall, restitution, target, way = 0.1, 0.49, 0.75, -0.05, 1.4
-    lateral = (mirrored(target, wall, restitution) - start) / way  # per unit of x
-    there = (wall - start) / lateral
-    assert wall - restitution * lateral * (way - there) == pytest.approx(target)
+@pytest.mark.parametrize("rims", [1, 2, 3])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("restitution", [1.0, 0.75])
+def test_a_puck_aimed_at_the_mirrored_target_arrives_at_the_target(rims: int, side: float, restitution: float) -> None:
+    """Followed from wall to wall: at each the lateral velocity turns round and shrinks."""
+    y, line, target, way = 0.1, 0.49, -0.05, 1.4
+    lateral = (mirrored(target, side * line, rims, restitution) - y) / way  # per unit of x
+    assert lateral * side > 0.0
+    for _ in range(rims):
+        wall = math.copysign(line, lateral)
+        way -= (wall - y) / lateral
+        y, lateral = wall, -restitution * lateral
+    assert y + lateral * way == pytest.approx(target)
 
 
 def test_the_mallet_touches_the_puck_opposite_to_where_it_shall_go(model: ShotModel) -> None:
@@ -108,7 +117,7 @@ def test_there_is_no_straight_shot_from_a_bad_place(model: ShotModel, puck: list
 
 def test_there_is_no_shot_without_the_time_for_the_way(model: ShotModel) -> None:
     puck = np.array([-0.4, -0.35, 0.0, 0.0, 0.0])
-    assert judge(puck, 0.3, 0.0, 0.0, TIP, NOBODY, 0.0, 0.0, model).value == 0.0
+    assert judge(puck, 0.3, 0.0, 0.0, TIP, NOBODY, 0.0, 0.0, OPEN.pace, OPEN.heeds, model).value == 0.0
 
 
 def test_the_speed_that_the_room_allows_uses_up_the_room(model: ShotModel) -> None:

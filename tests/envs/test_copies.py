@@ -59,14 +59,20 @@ def mid_episode(name, profile):
 
 @ALL
 @PROFILES
-@WAY
-def test_a_copy_has_the_same_future_and_moves_nothing_of_the_original(name, profile, way):
+def test_a_copy_has_the_same_future_and_moves_nothing_of_the_original(name, profile):
     env, untouched = mid_episode(name, profile), mid_episode(name, profile)
+    twins = [env.copy(), pickle.loads(pickle.dumps(env))]
+    expected = future(untouched)
+    for twin in (*twins, env):
+        assert future(twin) == expected
+
+
+@WAY
+def test_every_way_of_copying_makes_a_real_copy(way):
+    env = mid_episode("7dof-hit", "harsh")
     twin = way(env)
     assert type(twin) is type(env) and twin.simulation.data is not env.simulation.data
-    expected = future(untouched)
-    assert future(twin) == expected
-    assert future(env) == expected
+    assert future(twin) == future(env)
 
 
 @ALL
@@ -132,7 +138,7 @@ def scaled(env, action, k):
     return tuple(np.stack([start + (1.0 + 0.1 * k) * (one[0] - start), one[1]]) for one in action)
 
 
-@pytest.mark.parametrize("profile", ["ideal", "harsh"])
+@pytest.mark.parametrize("profile", ["harsh"])
 def test_copies_go_on_in_another_process(profile, tmp_path):
     environments = [mid_episode(name, profile) for name in ("3dof-hit", "7dof-hit", "tournament")]
     (tmp_path / "copies.pickle").write_bytes(pickle.dumps([(env, env.state) for env in environments]))
@@ -174,6 +180,8 @@ def test_what_was_set_on_an_environment_goes_with_it():
     robot = twin.env_info["robot"]
     assert robot["robot_model"] is twin.simulation.robot_model and robot["robot_data"] is twin.simulation.robot_data
     assert robot["robot_data"] is not env.env_info["robot"]["robot_data"]
+    for constraint in twin.env_info["constraints"].constraints.values():
+        assert constraint._env_info is twin.env_info
     assert list(twin.env_info) == list(env.env_info) and list(robot) == list(env.env_info["robot"])
 
 
@@ -226,7 +234,7 @@ def test_saved_bytes_hold_the_state_that_mujoco_names(name):
 
 
 @WAY
-@pytest.mark.parametrize("name", ["3dof-hit", "7dof-hit", "tournament"])
+@pytest.mark.parametrize("name", ["7dof-hit", "tournament"])
 def test_the_official_wrapper(name, way):
     np.random.seed(4)
     env = envs.AirHockeyChallengeWrapper(

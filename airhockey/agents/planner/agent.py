@@ -10,9 +10,10 @@ from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.kalman import Noise, PuckEstimate
-from airhockey.agents.estimation.prediction import PuckPredictor
 from airhockey.agents.estimation.watch import TableWatch
-from airhockey.agents.planner.estimation.shot_statistics import ShotStatistics
+from airhockey.agents.planner.estimation.choice import Arms
+from airhockey.agents.planner.estimation.outcome import Outcome
+from airhockey.agents.planner.shots.kinds import KINDS, OPEN
 from airhockey.agents.planner.skills.dead_puck import DeadPuck
 from airhockey.agents.planner.skills.defend import Defend
 from airhockey.agents.planner.skills.prepare import Prepare
@@ -25,6 +26,19 @@ from airhockey.agents.table import to_table
 
 WARM_UP_STEPS = 60
 """Per skill and puck."""
+EXPECTED = {
+    "open": 0.05, "corner": 0.04, "rim": 0.05, "middling rim": 0.05, "slow rim": 0.1, "slower rim": 0.1, "slowest rim": 0.1,
+    "rolling corner": 0.03, "drop": 0.04,
+}  # fmt: skip
+"""Points per try that a game begins with."""
+ANSWERS = {"repel": 0.05, "defend": 0.05}
+"""The same for the answers to a puck that comes."""
+TRIES = 6.0
+"""How many tries these expectations are worth."""
+IN_VAIN = 0.3
+"""Time for which a stroke of the kind chosen is looked for, in [s]; then another is chosen."""
+RETURNED = 0.3
+"""Speed towards the opponent at which a puck was knocked back, in [m]/[s]."""
 NOISE = Noise(drift_velocity=0.001, drift_share=0.002)
 """A slow puck is almost undisturbed: long averages are what makes a strike accurate."""
 
@@ -46,10 +60,11 @@ class PlannerAgent(AgentBase):
         self._dt = float(env_info["dt"])
         self._controller = JointController(ArmKinematics(spec_of(env_info)), Workspace.of(env_info), self._dt)
         self._watch = TableWatch(env_info, NOISE)
-        self._predictor = PuckPredictor()
         self._task = str(env_info["env_name"]).rpartition("-")[2]
         self._smash, self._drop = Smash(env_info), DeadPuck(env_info)
-        self._shots = ShotStatistics()
+        self._kinds = {kind.name: kind for kind in KINDS}
+        self._strokes, self._answers = Arms(EXPECTED, TRIES), Arms(ANSWERS, TRIES)
+        self._outcome, self._answered = Outcome(), Outcome()
         self._skills: dict[str, Skill] = {
             "smash": self._smash,
             "drop": self._drop,
@@ -63,7 +78,11 @@ class PlannerAgent(AgentBase):
 
     def reset(self) -> None:
         """See `AgentBase.reset`."""
-        self._shots.serve()
+        self._outcome.serve()
+        self._answered.serve()
+        self._intent: str | None = None
+        self._vain: set[str] = set()
+        self._looked, self._answer, self._repelling = 0.0, "defend", False
         self._watch.reset()
         self._smash.forget()
         self._drop.forget()
@@ -77,14 +96,28 @@ class PlannerAgent(AgentBase):
         situation = self._look(observation)
         skill = self._choose(situation)
         self._step += 1
-        striking = skill is self._smash and skill.phase == "strike"
+        before = skill.phase
         action = skill.act(situation)
-        if striking and skill.phase == "recover":
-            self._shots.struck()
-        self._shots.wait(situation.dt)
+        self._learn(situation, skill, before)
         self._drop.watch(situation)
         self.phase = f"{skill.name} {skill.phase}"
         return action
+
+    def _learn(self, situation: Situation, skill: Skill, before: str) -> None:
+        """Note what was played, and what has become of it."""
+        x = float(situation.puck.position[0])
+        for arm, points in self._outcome.see(x, situation.dt):
+            self._strokes.tell(arm, points)
+        for arm, points in self._answered.see(x, situation.dt):
+            self._answers.tell(arm, points)
+        if before == "strike" and skill.phase == "recover":
+            self._outcome.struck("drop" if skill is self._drop else self._smash.kind.name)
+            self._answered.struck("defend")
+            self._intent = None
+        self._repelling = self._repelling or (skill.name == "repel" and skill.phase == "catch")
+        if self._repelling and situation.puck.velocity[0] > RETURNED:
+            self._answered.struck("repel")
+            self._repelling = False
 
     def _warm_up(self) -> None:
         """Let every skill act on some pucks: what is compiled or loaded at a first call must not be so in the game."""
@@ -97,7 +130,7 @@ class PlannerAgent(AgentBase):
                     if step == 0:
                         self._controller.reset(np.array(self._controller.kinematics.spec.start))
                         self._smash.forget()
-                    now = Situation(estimate, self._predictor, self._controller, opponent, step, self._dt)
+                    now = self._situation(estimate, to_table(self._controller.tip_position()), opponent, step)
                     if step == 0:
                         skill.begin(now)
                     self._smash.scout(now)
@@ -109,21 +142,45 @@ class PlannerAgent(AgentBase):
         name = before.name if before is not None else "ready"
         finished = before is None or before.finished
         committed = before is not None and getattr(before, "committed", False)
-        stroke, patient = self._stroke(situation), self._shots.futile
-        skill = self._skills[choose(self._task, name, finished, committed, stroke, patient, situation)]
+        if name not in ("defend", "repel"):
+            self._answer = "defend" if self._task == "hit" else self._answers.draw() or "defend"
+        stroke = self._stroke(situation)
+        skill = self._skills[choose(self._task, name, finished, committed, stroke, self._answer, situation)]
         if skill is not before:
             skill.begin(situation)
             self._skill = skill
         return skill
 
     def _stroke(self, situation: Situation) -> str | None:
-        """The skill that has a stroke worth trying: a shot at the goal or, in a game where those are futile, a drop."""
+        """The skill that has a stroke worth trying: in a game, of the kind that is to be tried next, or any before long."""
         if self._task in ("defend", "prepare"):
             return None
-        if self._task != "hit" and self._shots.futile:
+        if self._task == "hit":
+            return "smash" if self._smash.scout(situation) is not None else None
+        if situation.puck.position[0] > 0.0:
+            self._intent = None
+            self._vain.clear()
+            return None
+        if self._intent is None:
+            self._intent, self._looked = self._strokes.draw(self._vain) or OPEN.name, 0.0
+        found = self._stroke_of(self._intent, situation)
+        self._looked = 0.0 if found else self._looked + situation.dt
+        if self._looked > IN_VAIN:
+            self._vain.add(self._intent)
+            self._intent = None
+        return found
+
+    def _stroke_of(self, intent: str, situation: Situation) -> str | None:
+        if intent == "drop":
             return "drop" if self._drop.scout(situation) is not None else None
+        self._smash.aim_for(self._kinds[intent])
         return "smash" if self._smash.scout(situation) is not None else None
 
     def _look(self, observation: Array) -> Situation:
-        puck, opponent = self._watch.see(observation, to_table(self._controller.tip_position()))
-        return Situation(puck, self._predictor, self._controller, opponent, self._step, self._dt)
+        return self._situation(*self._watch.see(observation, self._controller.tip_position()), self._step)
+
+    def _situation(self, puck: PuckEstimate, tip: Array, opponent: Array | None, step: int) -> Situation:
+        controller = self._controller
+        return Situation(
+            puck, tip, controller.tip_velocity(), opponent, self._dt, step, controller.move, controller.state.position
+        )

@@ -13,14 +13,14 @@ APART = 0.02
 """Gap between mallet and puck beyond which a prepared puck may be shot at, in [m]."""
 COMING = 0.4
 """Speed towards us above which a puck is defended against, in [m]/[s]."""
-FAST = 1.6
-"""Speed beyond which such a puck is knocked back rather than caught, in [m]/[s]."""
+FAST = 0.6
+"""Speed beyond which such a puck may be knocked back rather than caught, in [m]/[s]."""
 OURS = 0.0
 """x up to which the puck is ours to play, in [m]."""
 
 
 def choose(
-    task: str, now: str, finished: bool, committed: bool, stroke: str | None, patient: bool, situation: Situation
+    task: str, now: str, finished: bool, committed: bool, stroke: str | None, answer: str, situation: Situation
 ) -> str:
     """The name of the skill for this step.
 
@@ -30,7 +30,7 @@ def choose(
         finished: Whether it has nothing left to do.
         committed: Whether its stroke is under way.
         stroke: Name of the skill that has a stroke worth trying, if any.
-        patient: Whether even a fast puck is caught, not knocked back.
+        answer: Name of the skill for a puck that comes fast.
         situation: Now.
     """
     if task in ("defend", "prepare"):
@@ -42,9 +42,10 @@ def choose(
     if coming and task != "hit":  # in a game a fast puck is stopped first; in the hit task none is fast
         if now in ("defend", "repel") and not finished:
             return now
-        return "repel" if situation.puck.speed > FAST and not patient else "defend"
-    apart = float(np.hypot(*(puck - situation.tip))) > CONTACT + APART
-    if stroke is not None and (apart or now != "prepare"):
+        return answer if situation.puck.speed > FAST else "defend"
+    if stroke is not None and (
+        finished or now != "prepare" or float(np.hypot(*(puck - situation.tip))) > CONTACT + APART
+    ):
         return stroke
     if now == "prepare" and not finished and puck[0] < OURS:
         return "prepare"

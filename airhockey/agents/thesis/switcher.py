@@ -2,13 +2,16 @@
 
     ‖v_puck‖ > θ → defend;   else, on the own side: enough_space → hit, no space → prepare;   else home
 
-Only a puck that comes towards the own goal needs defending; the thesis leaves that to its figure.
+Only a puck that comes towards the own goal needs defending; the thesis leaves that to its figure. Whether there is space for a
+puck that has come to rest is decided once (`RestingPuck`).
 """
 
 from dataclasses import dataclass
 
 from airhockey.agents.estimation.motion import advance, puck_motion
-from airhockey.agents.thesis.policy import View, enough_space
+from airhockey.agents.skill import Situation
+from airhockey.agents.thesis.policy import enough_space
+from airhockey.agents.thesis.resting import RestingPuck
 from airhockey.agents.thesis.state_machine import Task
 
 
@@ -40,18 +43,26 @@ class Switcher:
     def __init__(self, parameters: SwitcherParameters, tasks: frozenset[Task]) -> None:
         self._parameters, self._tasks = parameters, tasks
         self._constants = puck_motion().constants
+        self._resting = RestingPuck()
 
-    def choose(self, view: View) -> Task:
+    def reset(self) -> None:
+        """A serve: forget the puck."""
+        self._resting.reset()
+
+    def choose(self, now: Situation) -> Task:
         """The task that the situation asks for; home where it is not among those that may be played."""
-        task = self._wanted(view)
+        self._resting.see(now.puck)
+        task = self._wanted(now)
         return task if task in self._tasks else Task.HOME
 
-    def _wanted(self, view: View) -> Task:
-        p, puck = self._parameters, view.puck
+    def _wanted(self, now: Situation) -> Task:
+        p, puck = self._parameters, now.puck
         if puck.speed > p.defend_speed and puck.velocity[0] < -p.approach_speed:
             return Task.DEFEND
         if puck.position[0] >= p.reach_x:
             return Task.HOME
+        if self._resting.playable is not None:
+            return Task.HIT if self._resting.playable else Task.PREPARE
         later = puck.state.copy()
         advance(later, p.look_ahead, self._constants)
         return Task.HIT if enough_space(later[:2], p.side_tolerance, p.end_tolerance) else Task.PREPARE

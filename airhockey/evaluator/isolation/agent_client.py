@@ -125,6 +125,15 @@ class IsolatedAgent(AgentHandle):
         """What its commands so far have cost, in [s]."""
         return self.times.charged
 
+    def thinks_for(self, seconds: float) -> float:
+        """Wait so long; gives the CPU time that it used meanwhile, though nobody asked it anything, in [s]."""
+        processes = self._watched.tree
+        processes.look()
+        before = processes.cpu_time()
+        time.sleep(seconds)
+        processes.look()
+        return max(processes.cpu_time() - before, 0.0)
+
     def stop(self) -> None:
         """Tell the agent that it is over, and end its process."""
         try:

@@ -65,6 +65,7 @@ class Server:
 
         seed(job["seed"])
         self._agent, self._size = build_from_names(job)
+        os.environ["PYTHONPATH"] = os.pathsep.join([os.getcwd(), os.environ.get("PYTHONPATH", "")])  # of its children
         order = self._agent.interpolation_order
         self._memory.write_text({"interpolation_order": order if order is None else int(order)})
 

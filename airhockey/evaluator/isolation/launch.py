@@ -5,7 +5,9 @@ import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from airhockey.agents.packaging.checkout import PACKAGE, Checkout
 from airhockey.evaluator.engines.workers import ONE_THREAD
+from airhockey.evaluator.isolation.interpreters import FOREIGN, Interpreter
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.sandbox import (
     SCRATCH,
@@ -44,38 +46,40 @@ class Launch:
     temporary_folders: list[str] = field(default_factory=list)
 
 
-def plain(folder: Path | None) -> Launch:
+def plain(checkout: Checkout | None, own: Interpreter | None = None) -> Launch:
     """A child that only has limits.
 
     Args:
-        folder: The submission's, with `agent_builder.py`; None for a player of the registry.
+        checkout: The submission; None for a player of the registry.
+        own: The interpreter that it brings; None for ours.
     """
     scratch = tempfile.mkdtemp(prefix="airhockey-scratch-")
-    start = scratch if folder is None else str(folder.parent if folder.name == "air_hockey_agent" else folder)
-    name = None if folder is None else str(folder)
-    return Launch(_command(), environment(scratch), start, name, temporary_folders=[scratch])
+    start, name = (scratch, None) if checkout is None else (str(checkout.root), str(checkout.package))
+    return Launch(_command(own), environment(scratch, own), start, name, temporary_folders=[scratch])
 
 
-def sandboxed(folder: Path | None, limits: Limits) -> Launch:
-    """A child that sees the software, its submission and a scratch folder in memory; no network, no other process.
+def sandboxed(checkout: Checkout | None, limits: Limits, own: Interpreter | None = None) -> Launch:
+    """A child that sees the software, the root of its submission and a scratch folder in memory; no network, no other process.
 
     Raises:
         ConfigurationError: The submission holds a link, a pipe or a device.
     """
     temporary_folders: list[str] = []
-    command = walls(limits.scratch)
+    command = walls(limits.scratch, None if own is None else [*own.folders, str(FOREIGN.parent)])
     inside = None
-    if folder is not None:
-        inside = f"{SUBMISSION}/air_hockey_agent"
-        shown = str(_readable(folder, temporary_folders))
-        command += ["--perms", "0755", "--dir", SUBMISSION, "--ro-bind", shown, inside, "--chdir", SUBMISSION]
-    command += [*closing(), *_command()]
-    return Launch(command, environment(SCRATCH), "/", inside, new_user(), True, temporary_folders)
+    if checkout is not None:
+        alone = checkout.root == checkout.package
+        inside = f"{SUBMISSION}/{PACKAGE}" if alone else SUBMISSION
+        shown = str(_readable(checkout.root, temporary_folders))
+        command += ["--perms", "0755", "--dir", SUBMISSION] if alone else []
+        command += ["--ro-bind", shown, inside, "--chdir", inside]
+    command += [*closing(), *_command(own)]
+    return Launch(command, environment(SCRATCH, own), "/", inside, new_user(), True, temporary_folders)
 
 
-def environment(scratch: str) -> dict[str, str]:
-    """The child's environment: nothing of the evaluator's but where software is found."""
-    return {
+def environment(scratch: str, own: Interpreter | None = None) -> dict[str, str]:
+    """The child's environment: nothing of the evaluator's but where software is found, and that only for our interpreter."""
+    ours = {
         **software_environment(),
         "HOME": scratch,
         "TMPDIR": scratch,
@@ -86,21 +90,24 @@ def environment(scratch: str) -> dict[str, str]:
         ),
         **ONE_THREAD,
     }
+    if own is not None:
+        del ours["PYTHONPATH"], ours["NUMBA_CACHE_LOCATOR_CLASSES"]
+    return ours
 
 
-def _command() -> list[str]:
-    return python("agent_process")
+def _command(own: Interpreter | None) -> list[str]:
+    return python("agent_process") if own is None else [own.path, "-I", str(FOREIGN)]
 
 
 def _readable(folder: Path, temporary_folders: list[str]) -> Path:
-    """The folder, or a copy where another user could not read it."""
+    """The folder, or a copy where another user could not read it; what tools leave in it is not looked at."""
     files = list(files_of(folder))
     places = {folder, *files, *(parent for file in files for parent in file.parents if parent.is_relative_to(folder))}
     if not is_root() or all(place.stat().st_mode & (0o005 if place.is_dir() else 0o004) for place in places):
         return folder
     copy = Path(tempfile.mkdtemp(prefix="airhockey-submission-"))
     temporary_folders.append(str(copy))
-    target = copy / "air_hockey_agent"
+    target = copy / "entry"
     shutil.copytree(folder, target, symlinks=True, ignore=shutil.ignore_patterns(*TOOLS))
     for path in (copy, target, *target.rglob("*")):
         if not path.is_symlink():

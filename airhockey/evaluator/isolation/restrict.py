@@ -31,8 +31,13 @@ class Restrictions:
     sandbox: bool = False
 
     def to_json(self) -> dict[str, Any]:
-        """As plain values."""
-        return {"limits": asdict(self.limits), "user": self.user, "sandbox": self.sandbox}
+        """As plain values; `kernel` is for a child that cannot import this module."""
+        kernel: dict[str, Any] = {}
+        machine = seccomp.MACHINES.get(platform.machine())
+        if self.sandbox and machine is not None:
+            kernel = {"seccomp": machine.seccomp, "keyctl": machine.keyctl, "capset": _CAPSET[platform.machine()]}
+            kernel["program"] = seccomp.program(machine).hex()
+        return {"limits": asdict(self.limits), "user": self.user, "sandbox": self.sandbox, "kernel": kernel}
 
     @classmethod
     def from_json(cls, content: dict[str, Any]) -> "Restrictions":

@@ -26,13 +26,18 @@ _FIRST_USER, _USERS = 1 << 30, 1 << 29
 _PATIENCE = 60.0  # [s] for the check
 
 
-def walls(scratch: int) -> list[str]:
+def walls(scratch: int, software: Sequence[str] | None = None) -> list[str]:
     """bubblewrap's command up to what is shown of the submission.
 
     Args:
         scratch: What may be written into each folder of scratch files, in bytes.
+        software: Folders of the interpreter inside and its packages; None for ours.
     """
-    return [BWRAP, *_namespaces(), *_file_system(scratch)]
+    return [
+        BWRAP,
+        *_namespaces(),
+        *_file_system(scratch, _outermost(_python_folders() if software is None else software)),
+    ]
 
 
 def closing() -> list[str]:
@@ -102,7 +107,7 @@ def _namespaces() -> list[str]:
     return [*apart, *rights, *ending]
 
 
-def _file_system(scratch: int) -> list[str]:
+def _file_system(scratch: int, folders: Sequence[str]) -> list[str]:
     """Arguments that show the system's software and Python's, read-only, and folders in memory to write to.
 
     What can be written is mounted first: an interpreter that lies below it is then shown in it, not hidden by it.
@@ -118,7 +123,6 @@ def _file_system(scratch: int) -> list[str]:
     arguments += ["--proc", "/proc", "--dev", "/dev"]
     for place in (SCRATCH, "/dev/shm"):
         arguments += ["--perms", "1777", "--size", str(scratch), "--tmpfs", place]
-    folders = _python_folders()
     above = {
         parent for place in folders for parent in Path(place).parents if str(parent) not in ("/", SCRATCH, *_SYSTEM)
     }
@@ -130,10 +134,15 @@ def _file_system(scratch: int) -> list[str]:
 
 
 def _python_folders() -> Sequence[str]:
-    """Where the interpreter, its packages and airhockey lie, beyond the system's own folders."""
+    """Where our interpreter, its packages and airhockey lie."""
     folders = [sys.prefix, sys.base_prefix, *site.getsitepackages(), str(_package())]
     if site.ENABLE_USER_SITE:
         folders.append(site.getusersitepackages())
+    return folders
+
+
+def _outermost(folders: Sequence[str]) -> list[str]:
+    """Those that exist, lie outside the system's folders, and in none of the others."""
     there = [Path(folder) for folder in dict.fromkeys(folders) if os.path.isdir(folder)]
     outside = [folder for folder in there if not any(folder.is_relative_to(place) for place in _SYSTEM)]
     outermost = [folder for folder in outside if not any(folder.is_relative_to(o) and folder != o for o in outside)]

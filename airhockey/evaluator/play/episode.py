@@ -91,7 +91,7 @@ class EpisodePlayer:
         seeding.seed_global_generators(for_agent)
         for seat in task.seats:
             seat.seed(for_agent)
-        return Rollout(task.env, task.seats, seed(seeding.ENVIRONMENT))
+        return Rollout(task.env, task.seats, seed(seeding.ENVIRONMENT), self.options.real_time)
 
     def close(self) -> None:
         """Tell the agent that the evaluation is over, and let go of everything built."""
@@ -121,6 +121,8 @@ class EpisodePlayer:
             Limits(patience=options.patience),
             options.parameters,
             seed,
+            options.python,
+            options.settings,
         )
         make = functools.partial(envs.make, name, disturbances=self.profile, edition=options.edition)
         env, seats = build_seats(make, [entrant], Care(options.clock), seed)

@@ -73,7 +73,7 @@ class GamePlay:
         self._episode = self._rules.horizon.task
         self._environment_seed = np.random.SeedSequence(job.seed).spawn(1)[0]
         self._agents_seed = game_agents_seed(options.agent_seed, job.seed, job.key)
-        self.rollout = Rollout(env, seats, self._environment_seed)
+        self.rollout = Rollout(env, seats, self._environment_seed, options.real_time)
         self.log = EventLog(env, self._rules.game.faults_per_point)
         self.penalties = [Penalties(seat, self._rules, env.constraint_slices) for seat in seats]
 

@@ -185,23 +185,23 @@ def finish(push: Array, goal: Goal) -> None:
         push[END + i] = min(max(push[END + i], goal.lower[i]), goal.upper[i])
 
 
+class Found(NamedTuple):
+    """A push and its value; below −1: there is none yet."""
+
+    push: Array
+    value: float
+
+
 @compiled
-def search(
-    puck: Array,
-    best: Array,
-    best_value: float,
-    goal: Goal,
-    constants: Array,
-    rng: np.random.Generator,
-    tries: int,
-) -> tuple[Array, float]:
-    """Improve on a push. Returns the best one and its value. `best_value` below −1: there is none yet."""
+def search(puck: Array, found: Found, goal: Goal, constants: Array, rng: np.random.Generator, tries: int) -> Found:
+    """Improve on a push; gives the best one."""
+    best, best_value = found
     for _ in range(tries):
         local = best_value > -0.4 and rng.uniform(0.0, 1.0) < 0.5
         push = vary(best, puck, goal, rng) if local else draw(puck, goal, rng)
         if not possible(push, goal.lower, goal.upper, goal.speed, goal.acceleration):
             continue
-        found = value(puck, push, goal, constants, best_value)
-        if found > best_value:
-            best, best_value = push, found
-    return best, best_value
+        worth_of_it = value(puck, push, goal, constants, best_value)
+        if worth_of_it > best_value:
+            best, best_value = push, worth_of_it
+    return Found(best, best_value)

@@ -61,18 +61,25 @@ def strike_normal(puck_velocity: Array, direction: Array, speed: float, gain: fl
 
 
 @compiled
-def mirrored(y: float, wall: float, restitution: float) -> float:
-    """Where to aim beyond a wall so that the puck comes off it towards y.
+def mirrored(y: float, wall: float, rims: int, restitution: float) -> float:
+    """Where to aim beyond the walls so that the puck comes off the last of them towards y.
 
-    The bounce shrinks the lateral velocity by e; seen from before it, the way back is 1/e times as long.
+    A bounce shrinks the lateral velocity by e; seen from before it, the way after it is 1/e times as long. Unfolded, the way
+    across is the one to the first wall, then the table's width for every further bounce, and from the last wall to y.
 
     Args:
         y: Target, in [m].
-        wall: The line on which the puck's centre turns round; its sign tells which wall, in [m].
+        wall: The line on which the puck's centre turns round first; its sign tells which wall, in [m].
+        rims: How many bounces, at least 1.
         restitution: e.
 
     Returns:
         y of the mirrored target, in [m].
     """
     side = 1.0 if wall > 0.0 else -1.0
-    return wall + side * abs(wall - y) / restitution
+    line, across, stretch = abs(wall), abs(wall), 1.0
+    for _ in range(rims - 1):
+        stretch /= restitution
+        across += 2.0 * line * stretch
+    last = side if rims % 2 == 1 else -side
+    return side * (across + (line - last * y) * stretch / restitution)

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 FLIGHT_STEP = 0.02
 """Of a simulated flight, in [s]."""
-_FLIGHT_STEPS = 150
+_FLIGHT_STEPS = 250
 _MISSED = 10.0
 """y of a puck that does not reach the goal line, in [m]."""
 _STUCK = 0.05

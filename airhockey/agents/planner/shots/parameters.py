@@ -19,6 +19,7 @@ class SmashParameters:
         turn: By which share of its sine a strike is commanded further from the x axis: the arm's systematic error.
         speed_places: x of the contact, in the table frame, in [m], ascending.
         speeds: Mallet speed that the arm reaches there, in [m]/[s]; linear between the places.
+        diagonal: By what share a stroke across is faster than one along x: times the square of its direction's sine.
         least_speed: Below this no stroke is worth it, in [m]/[s].
         acceleration, braking: Of the mallet in a stroke, in [m]/[s²].
         steady: Time at full speed before the contact, in [s].
@@ -42,6 +43,8 @@ class SmashParameters:
         approach_acceleration: In [m]/[s²].
         approach_margin: Added to the estimated time of that way, in [s].
         clearance: Gap between mallet and puck that is kept on the way, in [m].
+        posture: That the joints are drawn to while a shot is pursued, in [rad]; empty: the usual one.
+        posture_gain: How fast, in [1/s].
     """
 
     gain: float
@@ -74,10 +77,13 @@ class SmashParameters:
     approach_acceleration: float
     approach_margin: float
     clearance: float
+    diagonal: float = 0.0
+    posture: tuple[float, ...] = ()
+    posture_gain: float = 0.0
 
 
 @cache
-def smash_parameters(spec: RobotSpec) -> SmashParameters:
-    """The package's parameters for a robot."""
-    name = "smash_iiwa" if spec.n_joints == 7 else "smash_planar"
+def smash_parameters(spec: RobotSpec, in_game: bool = False) -> SmashParameters:
+    """The package's parameters for a robot, in a task or in a game."""
+    name = "smash_planar" if spec.n_joints != 7 else "smash_game" if in_game else "smash_iiwa"
     return load_parameters(SmashParameters, name, Path(__file__).parent)

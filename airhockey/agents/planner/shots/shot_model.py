@@ -42,6 +42,7 @@ class ShotModel(NamedTuple):
     turn: float
     speed_places: Array
     speeds: Array
+    diagonal: float
     least_speed: float
     acceleration: float
     braking: float

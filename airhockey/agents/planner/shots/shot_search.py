@@ -9,6 +9,7 @@ from airhockey.agents.compiling import compiled
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.planner.estimation.opponent import OpponentTrack
 from airhockey.agents.planner.shots.flight import FLIGHT_STEP, coast, state_at
+from airhockey.agents.planner.shots.kinds import OPEN, Kind
 from airhockey.agents.planner.shots.parameters import SmashParameters
 from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
 from airhockey.agents.planner.shots.shots import Shot, judge
@@ -44,21 +45,26 @@ class ShotPlanner:
         self._times = np.arange(0.0, parameters.longest_wait + FLIGHT, FLIGHT_STEP)
         self.reset()
         path = coast(np.array([-0.5, 0.0, 0.0, 0.0, 0.0]), dt, 10, self._motion)
-        search(path, dt, np.array([-0.8, 0.0]), np.zeros((2, 2)), 0.1, _NONE, 0, 2, 1.0, 0.0, self._model)
+        search(path, dt, np.array([-0.8, 0.0]), np.zeros((2, 2)), 0.1, _NONE, 0, 2, 1.0, 0.0, *OPEN[1:], self._model)
 
     def reset(self) -> None:
         """Forget the shot."""
+        self._kind = OPEN
         self._best = _NONE
         self._tried = 0
 
-    def plan(self, situation: Situation, opponent: OpponentTrack, time_left: float) -> Shot | None:
+    def plan(self, situation: Situation, opponent: OpponentTrack, time_left: float, kind: Kind = OPEN) -> Shot | None:
         """The best shot known now, or None where none is worth trying.
 
         Args:
             situation: Now.
             opponent: Brought up to date.
             time_left: Until the episode ends, in [s].
+            kind: Of shot.
         """
+        if kind is not self._kind:
+            self.reset()
+            self._kind = kind
         p = self._parameters
         horizon = min(p.longest_wait, time_left - p.flight)
         best = self._best._replace(wait=self._best.wait - self._dt) if self._best.value > 0.0 else _NONE
@@ -70,7 +76,8 @@ class ShotPlanner:
         self._best = search(
             path, self._dt, situation.tip,
             opponent.predict(self._times), 0.0 if opponent.swinging else p.opponent_doubt,
-            best, self._tried, count, horizon, p.improvement, self._model,
+            best, self._tried, count, horizon, p.improvement,
+            *kind[1:], self._model,
         )  # fmt: skip
         self._tried += count
         return self._best if self._best.value > self._least else None
@@ -88,6 +95,10 @@ def search(
     count: int,
     horizon: float,
     improvement: float,
+    rims: int,
+    pace: float,
+    lowest: float,
+    heeds: bool,
     packed: NDArray[Any],
 ) -> Shot:
     """Try shots and keep the best: half of them anywhere, half of them near the best so far.
@@ -101,12 +112,23 @@ def search(
         count: How many to try.
         horizon: Longest wait, in [s].
         improvement: By how much another shot must be better than the best.
+        rims, pace, lowest, heeds: As in `kinds.Kind`.
         packed: A record of `ShotModel`.
     """
     model = packed[0]
     horizon = min(horizon, _safe_time(path, path_step, model))
     best = judge(
-        state_at(path, path_step, best.wait), best.wait, best.aim, best.wall, tip, opponent, doubt, -LENIENCE, model
+        state_at(path, path_step, best.wait),
+        best.wait,
+        best.aim,
+        best.wall,
+        tip,
+        opponent,
+        doubt,
+        -LENIENCE,
+        pace,
+        heeds,
+        model,
     )
     if best.wait > horizon:
         best = Shot(0.0, best.wait, best.aim, best.wall, best.speed, best.normal, best.mallet)
@@ -114,15 +136,20 @@ def search(
     for i in range(first, first + count):
         u, v, w = (0.7548776662 * i) % 1.0, (0.5698402910 * i) % 1.0, (0.3819660113 * i) % 1.0
         if i % 2 == 0 or best.value == 0.0:
-            wait, wall = 0.1 + u * (horizon - 0.1), 0.0 if w < 0.6 else (-1.0 if w < 0.8 else 1.0)
-            aim = (2.0 * v - 1.0) * model.goal_half_width
+            wait = 0.1 + u * (horizon - 0.1)
+            wall = float(max(rims, 1)) * (1.0 if w < 0.5 else -1.0)
+            if rims == 0 or (rims < 0 and 0.2 < w < 0.8):
+                wall = 0.0
+            aim = 2.0 * v - 1.0
+            aim = aim * (model.goal_half_width - lowest) + (lowest if aim > 0.0 else -lowest)
         else:
             wait, wall = best.wait + 0.1 * (u - 0.5), best.wall
             aim = best.aim + 0.05 * (v - 0.5)
+            aim = (1.0 if aim > 0.0 else -1.0) * max(abs(aim), lowest)
         if wait > horizon or wait < 0.0:
             continue
         puck = state_at(path, path_step, wait)
-        shot = judge(puck, wait, aim, wall, tip, opponent, doubt, model.approach_margin, model)
+        shot = judge(puck, wait, aim, wall, tip, opponent, doubt, model.approach_margin, pace, heeds, model)
         if shot.value > bar:
             best, bar = shot, shot.value
     return best

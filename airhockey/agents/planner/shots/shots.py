@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from airhockey.agents.compiling import compiled
 from airhockey.agents.planner.shots.aiming import after_strike, mirrored, strike_normal
 from airhockey.agents.planner.shots.flight import FLIGHT_STEP, arrives, fly, probability_positive, probability_within
+from airhockey.agents.planner.shots.kinds import WAY
 from airhockey.agents.planner.shots.shot_model import ShotModel
 
 Array = NDArray[np.float64]
@@ -23,6 +24,7 @@ AROUND = 0.3
 """Time that it takes to go round the puck, in [s]."""
 CORRECTIONS = 2
 """Of the aim of a bounced shot, after its flight: the mirror does not know that a bounce takes tangential velocity, too."""
+_DECAY = 3  # place in the constants of `PuckMotion`
 THERE = 0.02
 """Distance from which the mallet counts as being where a strike begins, in [m]."""
 GRAIN = 0.005
@@ -36,7 +38,7 @@ class Shot(NamedTuple):
         value: Probability of a goal, less what waiting costs; 0 where the strike is impossible.
         wait: Time until contact, from now, in [s].
         aim: y on the goal line that is aimed at, in [m].
-        wall: −1, 0 or 1: bounces off the right wall, none, the left one.
+        wall: 0: no bounce; else how many, negative where the first is off the right wall.
         speed: Of the mallet, in [m]/[s].
         normal: Direction in which the mallet is commanded. Shape (2,).
         mallet: Centre of the mallet at contact, in [m]. Shape (2,).
@@ -61,6 +63,8 @@ def judge(
     opponent: Array,
     doubt: float,
     margin: float,
+    pace: float,
+    heeds: bool,
     model: ShotModel,
 ) -> Shot:
     """Work out a shot and its value.
@@ -72,6 +76,7 @@ def judge(
         opponent: As for `fly`.
         doubt: Standard deviation of where the opponent's mallet will be, in [m].
         margin: Time to spare that the way to the strike's beginning must leave, in [s].
+        pace, heeds: As in `kinds.Kind`.
         model: Constants.
     """
     nothing = Shot(0.0, wait, aim, wall, 0.0, np.zeros(2), np.zeros(2))
@@ -79,8 +84,13 @@ def judge(
         return nothing
     puck = seen.copy()
     puck[3] = model.drift_kept * seen[3] + model.spin_share * model.puck_radius * seen[4]
-    target = aim if wall == 0.0 else mirrored(aim, wall * model.wall, model.restitution)
+    rims = round(abs(wall))
+    target = aim if rims == 0 else mirrored(aim, wall * model.wall, rims, model.restitution)
     speed = float(np.interp(puck[0] - model.contact, model.speed_places, model.speeds))
+    leaving = pace + model.motion[_DECAY] * (model.goal_line - puck[0] - WAY)
+    way_x, way_y = model.goal_line - puck[0], target - puck[1]
+    speed *= 1.0 + model.diagonal * way_y * way_y / (way_x * way_x + way_y * way_y)
+    speed = min(speed, (leaving + (model.gain - 1.0) * puck[2]) / model.gain)
     normal = _towards(puck, target, speed, model)
     room = room_speed(puck[:2] - model.contact * normal, normal, model)
     if room < speed:  # a slower mallet must strike more from the side that the puck moves to
@@ -91,10 +101,11 @@ def judge(
     if speed < model.least_speed or normal[0] < FORWARD or not possible(mallet, normal, speed, spare, tip, puck, model):
         return nothing  # before the flight, which costs most
     goal, gap, length, passing = fly(_struck(puck, normal, speed, model), opponent, wait / FLIGHT_STEP, model)
-    for _ in range(CORRECTIONS if wall != 0.0 else 0):
+    turns = 1.0 if rims % 2 == 0 else -1.0  # in an odd number of mirrors, left and right are swapped
+    for _ in range(CORRECTIONS * rims):
         if not arrives(goal):
             return nothing
-        target += (goal - aim) / model.restitution  # in the mirror, left and right are swapped
+        target += turns * (aim - goal) / model.restitution**rims
         normal = _towards(puck, target, speed, model)
         mallet = puck[:2] - model.contact * normal
         if normal[0] < FORWARD or not possible(mallet, normal, speed, spare, tip, puck, model):
@@ -102,11 +113,13 @@ def judge(
         goal, gap, length, passing = fly(_struck(puck, normal, speed, model), opponent, wait / FLIGHT_STEP, model)
     value = 0.0
     if arrives(goal):
-        spread = length * (model.direction_spread + (model.bounce_spread if wall != 0.0 else 0.0)) + GRAIN
+        spread = length * (model.direction_spread + rims * model.bounce_spread) + GRAIN
         late = model.timing_spread * passing
         # The way to the opponent is shorter than the whole flight, and it moves across the puck's way only in part.
         apart = sqrt((0.8 * spread) ** 2 + (0.4 * late) ** 2 + doubt**2) + GRAIN
-        value = probability_within(goal, model.goal_half_width, spread) * probability_positive(gap, apart)
+        value = probability_within(goal, model.goal_half_width, spread)
+        if heeds:
+            value *= probability_positive(gap, apart)
         value *= exp(-model.patience * wait)
     commanded = turned(normal, model.turn)
     return Shot(value, wait, aim, wall, speed, commanded, puck[:2] - model.contact * commanded)

@@ -53,7 +53,7 @@ class DeadPuck(Striker):
         Args:
             env_info: Description of the environment.
         """
-        parameters = smash_parameters(spec_of(env_info))
+        parameters = smash_parameters(spec_of(env_info), in_game=env_info["env_name"] == "tournament")
         super().__init__(parameters, float(env_info["dt"]))
         self._model = make_shot_model(parameters, Workspace.of(env_info))
         self._shot: Shot | None = None

@@ -172,12 +172,12 @@ class Defend:
     def _find(self, puck: Array, tip: Array, tip_velocity: Array) -> Meeting | None:
         """The best meeting of all."""
         wish = self._wish
-        path, bounces, since = puck_path(puck, self._steps, wish.mouth, self._constants)
+        path = puck_path(puck, self._steps, wish.mouth, self._constants)
         present = round(self._meeting.time / STEP) if self._meeting is not None else -10
-        index, _, need = best_meeting(path, bounces, since, tip, tip_velocity, self._reach, wish, present)
+        index, _, need = best_meeting(path, tip, tip_velocity, self._reach, wish, present)
         if index < 0 or need > self._parameters.too_hard:
             return None
-        place, velocity = meeting(path[index], wish)
+        place, velocity = meeting(path.states[index], wish)
         return Meeting(place, velocity, index * STEP)
 
     def _refined(self, puck: Array, plan: Meeting) -> Meeting:
@@ -222,7 +222,7 @@ class Defend:
         p, puck = self._parameters, situation.puck
         if puck.velocity[0] > 0.0 and puck.position[0] < self._wish.far_x and puck.speed < p.overtake_speed:
             self.phase = "overtake"
-            ahead = situation.puck_at(p.overtake_time)[0][:2]
+            ahead = situation.puck_at(p.overtake_time)[:2]
             place = ahead + (CONTACT + p.clearance) * puck.velocity / max(puck.speed, 1e-6)
             place = np.clip(place, self._reach.lower, self._reach.upper)
             way = round_the_puck(

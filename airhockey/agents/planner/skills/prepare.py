@@ -18,7 +18,7 @@ from airhockey.agents.planner.contacts.puck_physics import put_on_table
 from airhockey.agents.planner.estimation.rest_detection import RestDetection
 from airhockey.agents.planner.motion.driving import drive, go_to, round_the_puck
 from airhockey.agents.planner.pushes.push import END, FOLLOW, LENGTH, PLACE, RETREAT, RUN_UP, START, coast, mallet_at
-from airhockey.agents.planner.pushes.push_search import Goal, finish, search, value, worth
+from airhockey.agents.planner.pushes.push_search import Found, Goal, finish, search, value, worth
 from airhockey.agents.skill import Array, Situation
 from airhockey.agents.table import CONTACT, to_table
 
@@ -195,9 +195,8 @@ class Prepare:
         return np.asarray(self._puck[:2] - before)
 
     def _think(self, tries: int) -> None:
-        self._push, self._value = search(
-            self._puck, self._push, self._value, self._now, self._constants, self._rng, tries
-        )
+        found = Found(self._push, self._value)
+        self._push, self._value = search(self._puck, found, self._now, self._constants, self._rng, tries)
         self._tried += tries
 
     def _decided(self) -> bool:

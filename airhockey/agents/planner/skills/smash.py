@@ -8,6 +8,7 @@ import numpy as np
 from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.planner.estimation.opponent import OpponentTrack
+from airhockey.agents.planner.shots.kinds import OPEN, Kind
 from airhockey.agents.planner.shots.parameters import smash_parameters
 from airhockey.agents.planner.shots.shot_search import ShotPlanner
 from airhockey.agents.planner.shots.shots import Shot
@@ -25,14 +26,25 @@ class Smash(Striker):
 
     def __init__(self, env_info: Mapping[str, Any]) -> None:
         """Compile the search, so that the first step of a game is not slow."""
-        p = smash_parameters(spec_of(env_info))
+        in_game = env_info["env_name"] == "tournament"
+        p = smash_parameters(spec_of(env_info), in_game)
         super().__init__(p, float(env_info["dt"]))
-        least = p.least_value_in_game if env_info["env_name"] == "tournament" else p.least_value
+        least = p.least_value_in_game if in_game else p.least_value
         self._planner = ShotPlanner(p, Workspace.of(env_info), self._dt, least)
         self._opponent = OpponentTrack(env_info)
         self._shot: Shot | None = None
         self._scouted = -1
+        self.kind = OPEN
         self._horizon = env_info["rl_info"].horizon if str(env_info["env_name"]).endswith("hit") else 10**9
+
+    def aim_for(self, kind: Kind) -> None:
+        """What kind of shot to look for from now on."""
+        self.kind = kind
+
+    @property
+    def pursuing(self) -> bool:
+        """Whether there is a shot that was found before."""
+        return self._shot is not None
 
     def forget(self) -> None:
         """A new serve: the plan and what was seen of the opponent are void."""
@@ -51,7 +63,7 @@ class Smash(Striker):
             if situation.opponent is not None:
                 self._opponent.update(situation.opponent, situation.step)
             if not self.committed:
-                self._shot = self._planner.plan(situation, self._opponent, self._time_left(situation))
+                self._shot = self._planner.plan(situation, self._opponent, self._time_left(situation), self.kind)
         return self._shot
 
     def act(self, situation: Situation) -> Array:
@@ -67,5 +79,5 @@ class Smash(Striker):
 
     def _look(self, situation: Situation) -> Array:
         self.phase = "look"
-        y = float(np.clip(situation.puck_at(0.3)[0][1], -0.3, 0.3))
+        y = float(np.clip(situation.puck_at(0.3)[1], -0.3, 0.3))
         return self.go(situation, np.array([GUARD, y]))

@@ -22,8 +22,8 @@ from airhockey.agents import build_agent
 from airhockey.agents.control.inverse_kinematics import inverse_kinematics
 from airhockey.agents.control.kinematics import ArmKinematics
 from airhockey.agents.estimation.motion import advance, puck_motion
-from airhockey.envs.kernel import referee
 from airhockey.envs.specs import IIWA, PUCK, TABLE
+from airhockey.envs.tasks import verdicts
 from airhockey.evaluator.judging.tasks import wilson_interval
 
 Array = NDArray[np.float64]
@@ -116,7 +116,7 @@ class Range:
             action = self._agent.draw_action(observation[half:].copy())
             observation, _, over, _ = env.step((still, action))
             if over:
-                return bool(env.verdict == referee.GOAL_HOME)
+                return bool(env.verdict == verdicts.GOAL_HOME)
             x, speed = env.base_observation[0], env.base_observation[3]
             if speed < 0.02 and x < 0.0:
                 break

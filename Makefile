@@ -1,6 +1,7 @@
 # The commands of the README. They set up .venv on first use; all they need is Python 3.11 or newer and make.
 #   make evaluate     the main job on the default agent (core dependencies only)
 #   make test         lint, types, layers, documentation and tests
+#   make compatibility   entries of others here, ours beside the official package (fetches packages)
 #   make docs         the documentation, in build/site
 
 PYTHON ?= python3
@@ -8,7 +9,7 @@ BIN := .venv/bin
 TASK ?= prepare
 EPISODES ?= 1000
 
-.PHONY: evaluate test lint types layers docs pytest clean
+.PHONY: compatibility evaluate test lint types layers docs pytest clean
 
 evaluate: .venv/core.installed
 	$(BIN)/hockey evaluate --task $(TASK) --episodes $(EPISODES)
@@ -31,6 +32,9 @@ docs: .venv/dev.installed
 
 pytest: .venv/dev.installed
 	$(BIN)/pytest --numprocesses auto
+
+compatibility: .venv/dev.installed
+	CLEAN_INSTALL=1 $(BIN)/pytest tests/submissions tests/envs/test_official_info.py tests/test_clean_install.py
 
 clean:
 	rm -rf .venv build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .cache docs/commands.md

@@ -10,6 +10,7 @@ import rich_click as click
 
 from airhockey import __version__
 from airhockey.commands import HELP_PAGE
+from airhockey.commands._streams import be_patient, leave, silence
 from airhockey.errors import AirHockeyError
 
 USAGE_ERROR = 2
@@ -65,6 +66,8 @@ def hockey() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; an error that the user can mend is one line and exit status 2."""
+    os.environ["PYTHONSAFEPATH"] = "1"  # no child of ours imports from the present folder, which may be anybody's
+    be_patient()
     try:
         status = hockey.main(arguments, prog_name="hockey", standalone_mode=False)
     except click.ClickException as error:
@@ -75,8 +78,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except click.Abort:
         status = 130
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the interpreter complains as it ends
+        silence()
         status = 1
+    except OSError as error:
+        status = complain(f"{error.filename or 'the standard output'}: {error.strerror or error}")
+    lost = leave()
+    if lost is not None:
+        complain(f"the standard output could not be written ({lost}); what was played is stored")
+        status = status or 1
     sys.exit(status)
 
 

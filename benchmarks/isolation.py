@@ -13,8 +13,8 @@ from typing import Any
 
 from airhockey import envs
 from airhockey.evaluator.isolation.build import build_agent
-from airhockey.evaluator.isolation.launch import why_no_sandbox
 from airhockey.evaluator.isolation.modes import Mode
+from airhockey.evaluator.isolation.sandbox import why_no_sandbox
 
 ROUND = 100
 

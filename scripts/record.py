@@ -1,6 +1,6 @@
 """Make the recordings that guard the simulation: tests/data/recordings/*.npz, replayed by tests/envs/test_recordings.py.
 
-    python scripts/record.py [--folder tests/data/recordings]
+    python scripts/record.py [--folder tests/data/recordings] [--edition 2025]
 
 Make them anew only when the simulation is meant to change, and say why. A recording holds the start, the actions and what
 came of them. A mallet that meets a puck amplifies rounding, so each one also carries `chaos`: how far the same actions,
@@ -37,6 +37,7 @@ class Plan:
         steps: At most so many control steps in each serve; one that ends earlier is over.
         pucks: Start of each serve in world coordinates: position, yaw and their rates; none: a start drawn with the seed.
         sparse: Keep few observations.
+        edition: The year whose rules apply.
     """
 
     env: str
@@ -46,11 +47,13 @@ class Plan:
     steps: int = 15
     pucks: tuple[Puck, ...] = ()
     sparse: bool = False
+    edition: str = "2023"
 
     @property
     def name(self) -> str:
         """Of the file."""
-        return f"{self.env}_{self.kind}_o{'none' if self.order is None else self.order}_s{self.seed}"
+        year = "" if self.edition == "2023" else f"{self.edition}-"
+        return f"{year}{self.env}_{self.kind}_o{'none' if self.order is None else self.order}_s{self.seed}"
 
 
 BEFORE_THE_MALLET = ((-0.72, 0.02, 0.0, 0.0, 0.0, 0.0),)
@@ -74,6 +77,12 @@ PLANS = (
     Plan("7dof-defend", "ends", pucks=((-0.5, 0.2, 0.0, -0.105, 0.0, 0.0), (-0.1, 0.2, 0.0, 1.0, 0.0, 0.0))),
     Plan("7dof-prepare", "ends", pucks=((-0.5, 0.1, 0.0, 0.0, -0.8, 0.0), (-0.05, 0.2, 0.0, 0.8, 0.0, 0.0))),
     Plan("tournament", "serves", pucks=SERVES),
+    *(Plan(env, "sweep", seed=2, edition="2025") for env in envs.edition("2025").environments),
+    Plan("hit", "strike", steps=40, pucks=BEFORE_THE_MALLET, edition="2025"),
+    Plan("defend", "rims", -1, steps=40, pucks=((-0.7, 0.35, 0.1, -2.0, 1.5, 5.0),), edition="2025"),
+    Plan("prepare", "sweep", None, steps=4, edition="2025"),
+    Plan("hit_single", "wild", 5, steps=12, edition="2025"),
+    Plan("tournament", "strike", steps=40, pucks=((-0.72, 0.0, 0.0, 0.0, 0.0, 0.0), SERVES[0]), edition="2025"),
     Plan("tournament", "fault", steps=752, pucks=((-0.5, 0.2, 0.0, 0.0, 0.0, 0.0),), sparse=True),
 )
 
@@ -125,6 +134,11 @@ def _stroke(env: envs.Environment, start: Array) -> Iterator[Array]:
         yield np.stack([position, velocity, np.zeros(n)])
 
 
+def make(plan: Plan) -> envs.Environment:
+    """The plan's environment."""
+    return envs.make(plan.env, interpolation_order=plan.order, edition=plan.edition)
+
+
 def play(plan: Plan, starts: list[Array], script: tuple[Array, Array] | None = None) -> dict[str, Array]:
     """Play the plan from the base observations `starts`; what came of it, step by step.
 
@@ -133,7 +147,7 @@ def play(plan: Plan, starts: list[Array], script: tuple[Array, Array] | None = N
         starts: Base observation at the beginning of each serve.
         script: Play these actions instead, with the serves beginning at these steps.
     """
-    env = envs.make(plan.env, interpolation_order=plan.order)
+    env = make(plan)
     rows: dict[str, list[Any]] = {"obs0": [env.reset(state=starts[0])], "serves": [0]}
     moves = actions(plan, env) if script is None else iter(script[0])
     for serve, start in enumerate(starts):
@@ -160,7 +174,7 @@ def play(plan: Plan, starts: list[Array], script: tuple[Array, Array] | None = N
 
 def starts_of(plan: Plan) -> list[Array]:
     """The base observation at the beginning of every serve."""
-    env = envs.make(plan.env, interpolation_order=plan.order)
+    env = make(plan)
     env.reset(seed=plan.seed)
     base = env.base_observation
     starts = []
@@ -183,6 +197,8 @@ def record(plan: Plan) -> dict[str, Any]:
         arrays["obs"][dropped] = values[dropped] = arrays["jerk"][dropped] = np.nan
     arrays["jerk"] = arrays["jerk"].astype(np.float32)
     arrays |= {"env": np.array(plan.env), "order": np.array(NO_ORDER if plan.order is None else plan.order)}
+    if plan.edition != "2023":
+        arrays["edition"] = np.array(plan.edition)
     arrays |= {"init_base_obs": starts[0], "obs0": arrays["obs0"][0]}
     arrays |= {"reset_steps": serves[1:], "reset_base_obs": np.array(starts[1:])}
     return arrays | constraint_arrays(plan, values.astype(np.float32))
@@ -201,7 +217,7 @@ def chaos(plan: Plan, starts: list[Array], played: dict[str, Array], serves: Arr
 
 def constraint_arrays(plan: Plan, values: Array) -> dict[str, Array]:
     """The constraint values by name, and player in the tournament."""
-    parts = envs.make(plan.env).constraint_slices.items()
+    parts = make(plan).constraint_slices.items()
     if values.ndim == 2:
         return {f"c_{name}": values[:, part] for name, part in parts}
     return {f"c_{player}_{name}": values[:, player, part] for player in range(2) for name, part in parts}
@@ -211,9 +227,13 @@ def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--folder", type=Path, default=Path("tests/data/recordings"))
-    folder: Path = parser.parse_args().folder
+    parser.add_argument("--edition", help="record only those of this edition")
+    given = parser.parse_args()
+    folder: Path = given.folder
     folder.mkdir(parents=True, exist_ok=True)
     for plan in PLANS:
+        if given.edition not in (None, plan.edition):
+            continue
         arrays = record(plan)
         path = folder / f"{plan.name}.npz"
         np.savez_compressed(path, **arrays)

@@ -1,12 +1,12 @@
 """What an installation brings: one top-level package, with every module and asset in it."""
 
-import shutil
 import subprocess
 import sys
 import zipfile
 from pathlib import Path
 
 import pytest
+from sources import copy_sources
 
 ROOT = Path(__file__).parent.parent
 BUILD = "from setuptools import build_meta; build_meta.build_wheel('dist')"
@@ -16,8 +16,7 @@ BUILD = "from setuptools import build_meta; build_meta.build_wheel('dist')"
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> zipfile.ZipFile:
     """The wheel of a copy of the project, links at its root included."""
     copy = tmp_path_factory.mktemp("project") / "airhockey"
-    ignore = shutil.ignore_patterns(".*", "runs", "build", "dist", "*.egg-info", "__pycache__", "tests")
-    shutil.copytree(ROOT, copy, symlinks=True, ignore=ignore)
+    copy_sources(ROOT, copy)
     subprocess.run([sys.executable, "-c", BUILD], cwd=copy, check=True, capture_output=True)
     return zipfile.ZipFile(next((copy / "dist").glob("*.whl")))
 

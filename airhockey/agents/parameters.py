@@ -1,7 +1,8 @@
 """Parameters in YAML: read, checked against a frozen dataclass, and turned into one.
 
 A parameter file holds one mapping; nested dataclasses are nested mappings. Every field must be there unless it has a
-default, and nothing else may. A `tuple[float, ...]` field may fix its length by `field(metadata={"length": 4})`.
+default, and nothing else may. A NamedTuple that compiled code takes may stand for a dataclass: what of it has a default is no
+parameter, but filled in by the program. A `tuple[float, ...]` field may fix its length by `field(metadata={"length": 4})`.
 """
 
 import dataclasses
@@ -9,9 +10,8 @@ import math
 from pathlib import Path
 from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
-import yaml
-
 from airhockey.errors import ConfigurationError, unknown
+from airhockey.inputs.plain_yaml import read_yaml
 
 T = TypeVar("T")
 
@@ -28,13 +28,7 @@ def load_parameters(schema: type[T], source: str | Path, folder: Path) -> T:
         ConfigurationError: No such file, not YAML, an unknown or a missing key, a value of the wrong type or length.
     """
     path = _find(source, folder)
-    try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (yaml.YAMLError, OSError, UnicodeDecodeError) as error:
-        raise ConfigurationError(
-            f"cannot read the parameters in {str(path)!r}: {' '.join(str(error).split())}"
-        ) from error
-    return convert(schema, content, path.name)
+    return convert(schema, read_yaml(path), path.name)
 
 
 def convert(schema: type[T], content: Any, where: str) -> T:
@@ -50,18 +44,34 @@ def convert(schema: type[T], content: Any, where: str) -> T:
     """
     if not isinstance(content, dict):
         raise ConfigurationError(f"{where}: expected a mapping of parameters, not {content!r}")
-    fields = {field.name: field for field in dataclasses.fields(schema)}  # type: ignore[arg-type]
+    fields = _fields(schema)
     hints = get_type_hints(schema)
     for key in content:
         if key not in fields:
             raise unknown(f"parameter in {where}", key, fields)
     values = {}
-    for name, field in fields.items():
+    for name, (required, length) in fields.items():
         if name in content:
-            values[name] = _value(hints[name], content[name], f"{where}: {name}", field.metadata.get("length"))
-        elif field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING:
+            values[name] = _value(hints[name], content[name], f"{where}: {name}", length)
+        elif required:
             raise ConfigurationError(f"{where}: the parameter {name!r} is missing")
     return schema(**values)
+
+
+def _is_schema(hint: Any) -> bool:
+    return isinstance(hint, type) and (dataclasses.is_dataclass(hint) or hasattr(hint, "_field_defaults"))
+
+
+def _fields(schema: type[Any]) -> dict[str, tuple[bool, int | None]]:
+    """The parameters of a schema: whether each must be there, and the length of a list, where it is fixed."""
+    if not dataclasses.is_dataclass(schema):
+        defaults = getattr(schema, "_field_defaults")  # noqa: B009 - a NamedTuple's, which `type` does not know of
+        return {name: (True, None) for name in getattr(schema, "_fields") if name not in defaults}  # noqa: B009
+    missing = dataclasses.MISSING
+    return {
+        field.name: (field.default is missing and field.default_factory is missing, field.metadata.get("length"))
+        for field in dataclasses.fields(schema)
+    }
 
 
 def _find(source: str | Path, folder: Path) -> Path:
@@ -76,7 +86,7 @@ def _find(source: str | Path, folder: Path) -> Path:
 
 
 def _value(hint: Any, value: Any, where: str, length: int | None) -> Any:
-    if dataclasses.is_dataclass(hint) and isinstance(hint, type):
+    if _is_schema(hint):
         return convert(hint, value, where)
     if get_origin(hint) is tuple:
         element = get_args(hint)[0]

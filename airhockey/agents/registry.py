@@ -1,7 +1,7 @@
 """The players that come with the package, by name."""
 
 import importlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -29,10 +29,15 @@ class AgentEntry:
     environments: tuple[str, ...]
     factory: str
 
-    def build(self, env_info: Mapping[str, Any], agent_id: int = 1, **kwargs: Any) -> AgentBase:
-        """Import the factory and call it."""
+    def build(
+        self, env_info: Mapping[str, Any], agent_id: int = 1, settings: Sequence[str] = (), **kwargs: Any
+    ) -> AgentBase:
+        """Import the factory and call it; `settings` change the controller, see `airhockey.agents.control.parameters`."""
+        from airhockey.agents.control.parameters import settings_in_use
+
         module, _, attribute = self.factory.partition(":")
-        agent = getattr(importlib.import_module(module), attribute)(env_info, agent_id=agent_id, **kwargs)
+        with settings_in_use(settings):
+            agent = getattr(importlib.import_module(module), attribute)(env_info, agent_id=agent_id, **kwargs)
         if not isinstance(agent, AgentBase):
             raise ConfigurationError(f"{self.factory} did not return an agent but {type(agent).__name__}")
         return agent

@@ -1,85 +1,79 @@
-"""What the skills of the planner share: what they see (`Situation`) and what they are (`Skill`).
+"""What every player of the package is made of: what it knows at a step (`Situation`), and what it can do (`Skill`).
 
 In the plane of the table everything is given in the table frame (`airhockey.agents.table`: origin at its centre, x towards the
-opponent), like the estimate of the puck. Only the joint controller thinks in the robot frame: `to_robot` is the way there.
+opponent), like the estimate of the puck. Only the joint controller thinks in the robot frame.
 """
 
-from dataclasses import dataclass, field
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.estimation.kalman import PuckEstimate
-from airhockey.agents.estimation.prediction import Crossing, PuckPredictor
-from airhockey.agents.table import to_robot, to_table
+from airhockey.agents.estimation.prediction import Crossing, puck_predictor
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Situation:
-    """What the player knows at one control step.
+class Command(Protocol):
+    """How a player's rod tip is commanded: see `JointController.move`."""
+
+    def __call__(self, target: Array, velocity: Array | None = None, anchor: Array | None = None) -> Array:
+        """The joint command that brings the rod tip to a place at the end of the coming step. Shape (2, n)."""
+
+
+def no_command(target: Array, velocity: Array | None = None, anchor: Array | None = None) -> Array:
+    """What a situation answers that is only looked at."""
+    raise RuntimeError(f"nobody to move the rod tip to {target!r}: make the situation with a controller's `move`")
+
+
+class Situation(NamedTuple):
+    """What a player knows at one control step.
 
     Attributes:
         puck: Filtered, now, in the table frame.
-        predictor: Carries `puck` on.
-        controller: The last joint command, and the way to the next one. A skill commands through it, or sets `controller.state`
-            when it commands joints itself.
-        opponent: The opponent's mallet as seen, in the table frame, or None where there is no opponent. Shape (2,).
-        step: Control steps since the serve; 0 at the first observation.
-        dt: Length of a control step, in [s].
         tip: Commanded position of the rod tip before this step, in the table frame, in [m]. Shape (2,).
         tip_velocity: Its commanded velocity, in [m]/[s]. Shape (2,).
+        opponent: The opponent's mallet as seen, in the table frame, or None where there is no opponent. Shape (2,).
+        dt: Length of a control step, in [s].
+        step: Control steps since the serve; 0 at the first observation.
+        move: Commands the rod tip.
+        joints: Commanded joint positions before this step, in [rad]; None where nobody asks. Shape (n,).
     """
 
     puck: PuckEstimate
-    predictor: PuckPredictor
-    controller: JointController
-    opponent: Array | None
-    step: int
-    dt: float
-    tip: Array = field(init=False)
-    tip_velocity: Array = field(init=False)
+    tip: Array
+    tip_velocity: Array
+    opponent: Array | None = None
+    dt: float = 0.02
+    step: int = 0
+    move: Command = no_command
+    joints: Array | None = None
 
-    def __post_init__(self) -> None:
-        """Note where the rod tip is before it is commanded elsewhere."""
-        object.__setattr__(self, "tip", to_table(self.controller.tip_position()))
-        object.__setattr__(self, "tip_velocity", self.controller.tip_velocity())
-
-    def puck_at(self, time: float) -> tuple[Array, Array]:
-        """State (x, y, ẋ, ẏ, yaw rate) and covariance of the puck a time from now, in [s]. Shapes (5,), (5, 5)."""
-        return self.predictor.at_time(self.puck, time)
+    def puck_at(self, time: float) -> Array:
+        """State (x, y, ẋ, ẏ, yaw rate) of the puck a time from now, in [s]. Shape (5,)."""
+        return np.asarray(puck_predictor().path(self.puck, time)[-1])
 
     def puck_at_line(self, x: float, time: float) -> Crossing | None:
         """The puck's first passage of the line at x (table frame) within a time, in [s]."""
-        return self.predictor.at_line(self.puck, x, time)
-
-    def move(self, target: Array, velocity: Array | None = None, anchor: Array | None = None) -> Array:
-        """Command the rod tip to a place at the end of the coming step.
-
-        Args:
-            target: In the table frame, in [m]. Shape (2,).
-            velocity: Its velocity then, in [m]/[s]. Shape (2,).
-            anchor: Posture that the null space is drawn to, in [rad]. Shape (n,).
-
-        Returns:
-            Joint command. Shape (2, n).
-        """
-        return self.controller.step(to_robot(target), velocity, anchor)
+        return puck_predictor().at_line(self.puck, x, time)
 
 
 class Skill(Protocol):
-    """One thing that the player can do. Made once per player, from `env_info`; begun many times.
+    """One thing that a player can do. Made once per player; begun many times.
 
     Attributes:
-        name: "smash", "defend", "repel", "prepare" or "ready".
+        name: Of the skill, for logs and pictures.
         phase: What it is doing, for logs and pictures.
     """
 
-    name: str
-    phase: str
+    @property
+    def name(self) -> str:
+        """See above."""
+
+    @property
+    def phase(self) -> str:
+        """See above."""
 
     @property
     def finished(self) -> bool:

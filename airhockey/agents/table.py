@@ -26,9 +26,11 @@ _BASE = np.array([BASE_X, 0.0])
 
 def to_table(position_in_robot: Array) -> Array:
     """A position of the robot frame in the table frame. Only x and y are looked at. Shape (2,)."""
-    return np.asarray(position_in_robot[:2] + _BASE)
+    moved: Array = position_in_robot[:2] + _BASE
+    return moved
 
 
 def to_robot(position_in_table: Array) -> Array:
     """A position of the table frame in the robot frame. Shape (2,)."""
-    return np.asarray(position_in_table[:2] - _BASE)
+    moved: Array = position_in_table[:2] - _BASE
+    return moved

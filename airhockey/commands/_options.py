@@ -1,6 +1,7 @@
 """Options that several commands have, each declared once, and what is known once they are read."""
 
 import os
+import secrets
 from collections.abc import Callable
 from typing import Any
 
@@ -16,7 +17,33 @@ robot = click.option(
     "--robot", type=click.Choice(["7dof", "3dof"]), default="7dof", show_default=True, help="Who plays it."
 )
 env = click.option("--env", metavar="NAME", help="Task and robot in one name, as in 7dof-prepare.")
-seed = click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of everything.")
+
+
+class Seed(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic since click 8.4
+    """A natural number, or "random" for one of 128 bits that nobody can guess."""
+
+    name = "seed"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> int:
+        """The number."""
+        if value == "random":
+            return secrets.randbits(128)
+        return int(click.IntRange(min=0).convert(value, param, ctx))
+
+
+seed = click.option(
+    "--seed",
+    type=Seed(),
+    default=0,
+    show_default=True,
+    metavar="N|random",
+    help="Seed of everything; a random one is kept in the run's manifest.",
+)
+agent_seed = click.option(
+    "--agent-seed",
+    metavar="HEX",
+    help="Seed of what agents draw at random themselves.  [default: a secret where submissions play, kept in the manifest]",
+)
 jobs = click.option("--jobs", type=click.IntRange(min=1), help="Processes that play.  [default: one per CPU]")
 cluster = click.option(
     "--cluster", metavar="ADDRESS|local:N", help="Play on a Dask cluster, or on N Dask workers of this machine."
@@ -52,13 +79,30 @@ patience = click.option(
     metavar="SECONDS",
     help="How long to wait for an isolated or remote agent before it is stopped.",
 )
+real_time = click.option(
+    "--real-time",
+    type=click.FloatRange(min=0.0),
+    is_flag=False,
+    flag_value=1.0,
+    metavar="[FACTOR]",
+    help="Pace the steps: 1 as the robot, 2 twice as fast, 0 as fast as possible."
+    "  [default: 1 for submissions that think in threads or processes beside their steps, else 0]",
+)
+python = click.option(
+    "--python",
+    metavar="PATH",
+    help="Another interpreter for a submission's process: Python 3.8 to 3.14 with NumPy and what the agent needs.",
+)
 out = click.option("--out", metavar="FOLDER", help="Run folder.  [default: a new one under runs/]")
 resume = click.option("--resume", is_flag=True, help="Continue the run in --out; its options need not be repeated.")
 as_json = click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object, and nothing else.")
 quiet = click.option("--quiet", is_flag=True, help="No progress, only the result.")
 only_notes = click.option("--quiet", is_flag=True, help="Only say what is missing.")
 host = click.option(
-    "--host", default="127.0.0.1", show_default=True, help="Address to listen on; there is no password."
+    "--host",
+    default="127.0.0.1",
+    show_default=True,
+    help="Address to listen on; the page's address holds a token.",
 )
 port = click.option(
     "--port",
@@ -77,9 +121,10 @@ variant = click.option(
 )
 
 ISOLATION = (isolate, patience)
+PLAY = (*ISOLATION, real_time)
 VIEWER = (host, port, no_browser, window)
 RUN = (out, resume, quiet)
-GAMES = (game_steps, seed, jobs, cluster, disturbances, clock, variant, *ISOLATION, *RUN, as_json)
+GAMES = (game_steps, seed, agent_seed, jobs, cluster, disturbances, clock, variant, *PLAY, *RUN, as_json)
 
 
 def options(*added: Option) -> Option:

@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import secrets
 import shlex
 import sys
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping
@@ -147,8 +148,41 @@ def disturbances_of(given: Mapping[str, Any]) -> str:
     return from_anywhere(given["disturbances"], available())
 
 
-def game_options_of(given: Mapping[str, Any]) -> GameOptions:
-    """How games are played, from the options that are there."""
+def agent_seed_of(given: str | None, agents: Iterable[str]) -> str | None:
+    """The secret of the agents' seeds: as typed, or drawn where somebody else's code plays."""
+    if given is not None or all(agent in AGENTS for agent in agents):
+        return given
+    return secrets.token_hex(16)
+
+
+def python_of(given: str | None) -> str | None:
+    """The full path of an interpreter that can run agents; raises `ConfigurationError` for one that cannot."""
+    from airhockey.evaluator.isolation.interpreters import interpreter
+
+    return None if given is None else interpreter(given).path
+
+
+def real_time_of(given: Mapping[str, Any], agents: Iterable[str], environment: str) -> float:
+    """The pace asked for, or the one that the agents need; the user is told where it is theirs."""
+    if given.get("real_time") is not None:
+        return float(given["real_time"])
+    if given.get("resume"):
+        return 0.0  # the run keeps its own
+    from airhockey.evaluator.pacing import pace_for
+
+    for agent in dict.fromkeys(agents):
+        if pace_for(agent, environment, given["isolate"], given["patience"], given.get("python")):
+            click.echo(
+                f"hockey: {agent!r} thinks between its steps, in threads or processes: they are paced as on the robot "
+                "(--real-time 0 plays as fast as possible)",
+                err=True,
+            )
+            return 1.0
+    return 0.0
+
+
+def game_options_of(given: Mapping[str, Any], agents: Iterable[str] = ()) -> GameOptions:
+    """How games are played, from the options that are there and by what the agents need."""
     return GameOptions(
         steps=given["steps"],
         disturbances=disturbances_of(given),
@@ -156,6 +190,8 @@ def game_options_of(given: Mapping[str, Any]) -> GameOptions:
         variant=given.get("variant", "package"),
         isolate=given["isolate"] or "auto",
         patience=given["patience"],
+        real_time=real_time_of(given, agents, "tournament"),
+        agent_seed=agent_seed_of(given.get("agent_seed"), agents),
     )
 
 

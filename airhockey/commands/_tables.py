@@ -10,7 +10,7 @@ from airhockey.envs.editions import edition
 from airhockey.evaluator import RunResult, TaskResult
 from airhockey.evaluator.evaluation import failure_reasons
 from airhockey.evaluator.judging.standings import Standings
-from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES, official_class, wilson_interval
+from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES, judge, wilson_interval
 from airhockey.evaluator.match import GameResult, MatchFolder, MatchResult
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 from airhockey.evaluator.runs.folder import RunFolder
@@ -42,6 +42,7 @@ def print_result(result: TaskResult | RunResult, folder: EpisodeFolder) -> None:
 def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
     options = folder.manifest.options
     rules = edition(options.edition)
+    verdicts = [judge([record for record in folder.records if record.env == task.env], rules) for task in tasks]
     title = f"agent {options.agent}, {options.episodes} episodes, disturbances {options.disturbances}"
     table = _titled(title)
     table.add_column("")
@@ -51,13 +52,13 @@ def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
     table.add_row("  95 % interval", *map(_interval, tasks))
     for name in dict.fromkeys(name for task in tasks for name in task.violations):
         table.add_row(f"episodes violating {name}", *(str(task.violations.get(name, "–")) for task in tasks))
-    table.add_row("episodes violating computation_time", *(str(task.late) for task in tasks))
+    table.add_row("episodes violating computation_time", *(str(verdict.late) for verdict in verdicts))
     table.add_row("penalty points", *(f"{task.penalty:g}" for task in tasks))
     table.add_row("deployability", *(task.deployability for task in tasks))
     if options.episodes != OFFICIAL_EPISODES:
         table.add_row(
             f"  at this rate, {OFFICIAL_EPISODES} episodes",
-            *(official_class(task.penalty, task.episodes, rules) for task in tasks),
+            *(verdict.official_class for verdict in verdicts),
         )
     for name in ("mean", "p99", "max"):
         label = f"draw_action {name}, {options.clock} clock"

@@ -6,17 +6,17 @@ from typing import Any
 import click
 
 
-def show_in_viewer(show: Any, given: dict[str, Any]) -> None:
+def show_in_viewer(playback: Any, given: dict[str, Any]) -> None:
     """Show it until the user has enough."""
-    from airhockey.viewing.viewer import watch
+    from airhockey.viewing.viewer import show_playback
 
     browser = not given["no_browser"] and _has_display()
     try:
-        watch(show, given["host"], given["port"], given["window"], browser, click.echo)
+        show_playback(playback, given["host"], given["port"], given["window"], browser, click.echo)
     except KeyboardInterrupt:
         click.echo("", err=True)
     finally:
-        show.close()
+        playback.close()
 
 
 def _has_display() -> bool:

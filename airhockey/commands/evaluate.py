@@ -33,14 +33,21 @@ if TYPE_CHECKING:
     metavar="NAME|FILE",
     help="Parameters of the rule-based player: tuned, thesis, or a YAML file, as `hockey train pgpe` leaves it.",
 )
+@click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="control.NAME=VALUE",
+    help="Change our players' controller, as in control.solver=osqp or control.kinematics=pinocchio.",
+)
 @click.option("--episodes", type=click.IntRange(min=1), default=1000, show_default=True, help="Episodes of each task.")
-@common.options(common.seed, common.jobs, common.cluster, common.disturbances)
+@common.options(common.seed, common.agent_seed, common.jobs, common.cluster, common.disturbances)
 @click.option(
     "--interpolation-order",
     type=click.Choice(["1", "2", "3", "4", "5", "-1", "none"]),
     help="How actions become set-points.  [default: what the agent wants]",
 )
-@common.options(*common.ISOLATION, common.clock)
+@common.options(*common.PLAY, common.python, common.clock)
 @click.option("--official-dataset", is_flag=True, help="Also write the files of an official evaluation.")
 @common.options(*common.RUN, common.as_json)
 @click.pass_context
@@ -87,14 +94,22 @@ def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
 
 
 def _options(given: dict[str, Any]) -> "Options":
-    from airhockey.commands._session import agent_of, disturbances_of, from_anywhere
+    from airhockey.commands._session import (
+        agent_of,
+        agent_seed_of,
+        disturbances_of,
+        from_anywhere,
+        python_of,
+        real_time_of,
+    )
     from airhockey.evaluator import Options
     from airhockey.evaluator.isolation.modes import choose
 
     default = "planner" if given["parameters"] is None else "thesis"  # the one that reads them
     agent, order = agent_of(given["agent"] or default), given["interpolation_order"]
+    environments = _environments(given)
     return Options(
-        environments=_environments(given),
+        environments=environments,
         agent=agent,
         episodes=given["episodes"],
         seed=given["seed"],
@@ -103,6 +118,10 @@ def _options(given: dict[str, Any]) -> "Options":
         clock=given["clock"],
         isolate=choose(agent, given["isolate"]).mode,
         patience=given["patience"],
+        real_time=real_time_of(given, (agent,), environments[0]),
+        python=python_of(given["python"]),
+        settings=given["settings"],
+        agent_seed=agent_seed_of(given["agent_seed"], (agent,)),
         parameters=None if given["parameters"] is None else from_anywhere(given["parameters"]),
     )
 

@@ -38,7 +38,7 @@ def match(ctx: click.RichContext, /, **given: Any) -> None:
     session = Session("match", given, typed)
     home, away = (agent_of(given[side] or "") for side in ("home", "away"))
     own = {name: given[name] for name in ("games", "seed", "swap_sides")}
-    options = MatchOptions(home=home, away=away, game=game_options_of(given), **own)
+    options = MatchOptions(home=home, away=away, game=game_options_of(given, (home, away)), **own)
     engine = session.engine(given["games"], isolated=True)
     name = f"match-{Path(home).name}-{Path(away).name}-s{options.seed}"
     folder = session.open(options, name, begin_match, resume_match, (home, away))

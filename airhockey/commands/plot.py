@@ -51,7 +51,7 @@ def plot(ctx: click.RichContext, /, run: str, **given: Any) -> None:
 def _draw_parameters(path: Path, out: Path, given: dict[str, Any]) -> None:
     """A run of `hockey train pgpe`, and sweeps of its θ."""
     from airhockey.commands._session import cpus
-    from airhockey.evaluator.engines.processes import engine_for
+    from airhockey.evaluator.engines.engine import engine_for
     from airhockey.evaluator.runs.journal import read_journal
     from airhockey.learning.pgpe.folder import TrainingFolder
     from airhockey.learning.pgpe.plots import draw_sweep, plot_run, save

@@ -28,9 +28,9 @@ def replay(**given: Any) -> None:
     from airhockey.commands._session import MOST_NOTES, say_notes
     from airhockey.commands._viewer import show_in_viewer
     from airhockey.viewing.library import open_library
-    from airhockey.viewing.playback import RecordedShow
+    from airhockey.viewing.playback import RecordedPlayback
 
     library = open_library(given["run"])
     first = library.position(given["episode"]) if given["episode"] is not None else 0
     say_notes(library.notes, MOST_NOTES)
-    show_in_viewer(RecordedShow(library.entries, first), given)
+    show_in_viewer(RecordedPlayback(library.entries, first), given)

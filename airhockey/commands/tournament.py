@@ -58,7 +58,7 @@ def tournament(ctx: click.RichContext, /, **given: Any) -> None:
         entries=entries if given["resume"] else entering.with_replacements(entries, replacements),
         phases=given["phases"],
         seed=given["seed"],
-        game=game_options_of(given),
+        game=game_options_of(given, (entry.agent for entry in entries)),
     )
     extension = entries, given["phases"] if "phases" in typed else None, replacements
     folder = session.open(

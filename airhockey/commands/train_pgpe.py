@@ -106,7 +106,7 @@ def pgpe(ctx: click.RichContext, /, **given: Any) -> None:
         raise click.UsageError("--only fixes all other parameters already: leave out --fix")
     from airhockey.commands import _progress
     from airhockey.commands._session import DIVERGED, INTERRUPTED, Session, cpus
-    from airhockey.evaluator.engines.processes import engine_for
+    from airhockey.evaluator.engines.engine import engine_for
     from airhockey.learning.pgpe.training import resume, train
 
     session, (settings, begin) = Session("train pgpe", given, typed - _start(given, typed)), _settings(given)

@@ -16,20 +16,23 @@ PROBLEMS = 3
 @click.command()
 @click.argument("path", metavar="DIR|FILE", type=click.Path(path_type=Path))
 @click.option("--steps", type=click.IntRange(min=1), default=50, show_default=True, help="Control steps of every task.")
-@common.options(*common.ISOLATION)
+@common.options(*common.ISOLATION, common.python)
 @common.options(common.as_json)
 @click.pass_context
 def validate(ctx: click.RichContext, /, **given: Any) -> None:
     """Load a submission apart from everything, play a few steps of every task it claims, and say what to mend.
 
+    The last line is the verdict: plays, or does not play because of what, whose cause that is, and what to do.
+
     Exit status 3: there are problems; each is printed with its remedy.
 
     \b
     hockey validate my_agent
+    hockey validate path/to/a/checkout
     hockey validate my_agent-0.1.0.zip --steps 500
     """
     common.typed_options(ctx, given)
-    from airhockey.commands._session import say_what_is_not_protected
+    from airhockey.commands._session import python_of, say_what_is_not_protected
     from airhockey.errors import ConfigurationError
     from airhockey.evaluator.isolation.limits import Limits
     from airhockey.evaluator.isolation.modes import choose
@@ -42,7 +45,7 @@ def validate(ctx: click.RichContext, /, **given: Any) -> None:
     mode = choose(agent, given["isolate"]).mode
     say_what_is_not_protected((agent,), given["isolate"])
     limits = Limits(patience=patience, start=max(patience, Limits.start))
-    ctx.exit(_print(validate(path, mode, limits, given["steps"]), given["as_json"]))
+    ctx.exit(_print(validate(path, mode, limits, given["steps"], python_of(given["python"])), given["as_json"]))
 
 
 def _print(verdict: "Verdict", as_json: bool) -> int:
@@ -62,5 +65,7 @@ def _print(verdict: "Verdict", as_json: bool) -> int:
         click.echo(f"left out by hockey package: {name} ({why})")
     for problem in verdict.problems:
         click.echo(f"problem in {problem.where}: {problem.what}\n  remedy: {problem.remedy}")
-    click.echo(f"{verdict.name}: fit to be handed in" if not count else f"{verdict.name}: {count} problem(s)")
+    for note in verdict.notes:
+        click.echo(f"note: {note}")
+    click.echo(verdict.conclusion)
     return PROBLEMS if count else 0

@@ -66,19 +66,19 @@ def video(ctx: click.RichContext, /, **given: Any) -> None:
     from airhockey.commands._progress import of_frames
     from airhockey.commands._session import INTERRUPTED, MOST_NOTES, say_notes
     from airhockey.viewing.library import open_library
-    from airhockey.viewing.video import FilmOptions, write_film
-    from airhockey.viewing.video_writer import check_film
+    from airhockey.viewing.video import VideoOptions, write_video
+    from airhockey.viewing.video_writer import check_video
 
     out, (width, height) = given["out"], given["size"]
     own = {name: given[name] for name in ("fps", "speed", "highlights", "quality", "seconds", "at")}
-    options = FilmOptions(width=width, height=height, inset=not given["no_inset"], **own)
-    check_film(out, width, height, options.fps)
+    options = VideoOptions(width=width, height=height, inset=not given["no_inset"], **own)
+    check_video(out, width, height, options.fps)
     library = open_library(given["run"])
     entries = library.choose(given["episodes"])
     say_notes(library.notes, MOST_NOTES)
     try:
         with of_frames(given["quiet"]) as on_frame:
-            frames = write_film(out, entries, options, on_frame)
+            frames = write_video(out, entries, options, on_frame)
     except KeyboardInterrupt:
         click.echo("hockey: interrupted; nothing was written", err=True)
         ctx.exit(INTERRUPTED)

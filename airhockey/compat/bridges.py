@@ -72,7 +72,8 @@ def _with_shared_defaults(original: Callable[..., Any]) -> Callable[..., Any]:
     """`dataclass` that takes any default but a list, a dict or a set, as it did until 3.10; all else is the original's."""
 
     def decorate(cls: type, **options: Any) -> Any:
-        shared = {name: vars(cls)[name] for name in inspect.get_annotations(cls) if _refused(vars(cls).get(name))}
+        fields = [name for name, kind in inspect.get_annotations(cls).items() if "ClassVar" not in str(kind)]
+        shared = {name: vars(cls)[name] for name in fields if _refused(vars(cls).get(name))}
         for name, value in shared.items():
             setattr(cls, name, dataclasses.field(default_factory=functools.partial(_itself, value)))
         made = original(cls, **options)

@@ -7,4 +7,4 @@ import sys
 def hockey(*arguments: str) -> None:
     """Run a command in a process of its own; raises `subprocess.CalledProcessError` where it fails."""
     code = "import sys; from airhockey.cli import main; sys.exit(main())"
-    subprocess.run([sys.executable, "-c", code, *arguments], check=True)
+    subprocess.run([sys.executable, "-P", "-c", code, *arguments], check=True)

@@ -5,14 +5,21 @@ silence: after an edit, or after an update of the package. So each group of modu
 after all the sources that it is made of, constants included.
 """
 
+import functools
 import hashlib
 import os
 import pathlib
+import shutil
+import sys
+import tempfile
 from collections.abc import Callable, Iterable
+from multiprocessing.util import Finalize
 from typing import Any, TypeVar, cast
 
 import numba
 
+_PASSING = "AIRHOCKEY_PASSING_CACHE"
+"""Names the folder for compiled code that the parent made, where none can be written that stays."""
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -46,4 +53,30 @@ def _cache_folder(home: pathlib.Path, sources: Iterable[pathlib.Path]) -> str:
     reads_only = "ReadOnlyCache" in os.environ.get("NUMBA_CACHE_LOCATOR_CLASSES", "")
     if os.access(home, os.W_OK) or (reads_only and beside.is_dir()):
         return str(beside)
-    return str(pathlib.Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "airhockey" / name)
+    own = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "airhockey" / name
+    return str(own) if _can_write(own) else str(pathlib.Path(_passing_cache()) / name)
+
+
+def _can_write(folder: pathlib.Path) -> bool:
+    """Whether files can be written there, perhaps once it is made."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return True
+    except (OSError, RuntimeError):
+        return False
+
+
+@functools.cache
+def _passing_cache() -> str:
+    """A folder for this process and its children, where none can be written that stays; says once that this is slow."""
+    folder = os.environ.get(_PASSING)
+    if folder is None:
+        folder = os.environ[_PASSING] = tempfile.mkdtemp(prefix="airhockey-compiled-")
+        Finalize(None, shutil.rmtree, args=(folder,), kwargs={"ignore_errors": True}, exitpriority=1)
+        print(
+            "hockey: no folder for compiled code can be written: it is compiled anew each time, which takes a minute "
+            "(XDG_CACHE_HOME names a folder)",
+            file=sys.stderr,
+        )
+    return folder

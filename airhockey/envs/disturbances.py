@@ -10,10 +10,10 @@ from importlib import resources
 from typing import Annotated, Literal
 
 import msgspec
-import yaml
 from msgspec import Meta
 
 from airhockey.errors import ConfigurationError, unknown
+from airhockey.inputs.plain_yaml import load_yaml
 
 # The upper bounds are far above anything sensible: they keep out infinity, which YAML can write (.inf).
 Deviation = Annotated[float, Meta(ge=0.0, le=1e6)]
@@ -123,12 +123,14 @@ def load_disturbances(profile: "str | pathlib.Path | Disturbances") -> Disturban
     path = pathlib.Path(profile)
     try:
         if path.is_file():
-            return _parse(path.read_text(encoding="utf-8"), str(path))
+            return _parse(path.read_bytes(), str(path))
         if path.suffix in (".yaml", ".yml"):
             trouble = "that is not a file" if path.exists() else "there is no such file"
             raise ConfigurationError(f"no disturbance profile at {str(path)!r}: {trouble}")
         raise unknown("disturbance profile (or path of a YAML file)", str(profile), available())
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
+        if isinstance(error, ConfigurationError):
+            raise
         raise ConfigurationError(f"cannot read the disturbance profile {str(path)!r}: {error}") from error
 
 
@@ -138,11 +140,9 @@ def _load_from_package(name: str) -> Disturbances:
     return _parse(text, f"{name}.yaml")
 
 
-def _parse(text: str, source: str) -> Disturbances:
+def _parse(text: str | bytes, source: str) -> Disturbances:
     try:
-        return msgspec.convert(yaml.safe_load(text), Disturbances)
-    except (yaml.YAMLError, RecursionError) as error:
-        raise ConfigurationError(f"{source!r} is not valid YAML: {' '.join(str(error).split())}") from error
+        return msgspec.convert(load_yaml(text, source), Disturbances)
     except msgspec.ValidationError as error:
         raise ConfigurationError(
             f"{source!r} is not a valid disturbance profile: {error}; the package's server.yaml shows every key"

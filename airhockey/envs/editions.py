@@ -8,10 +8,10 @@ from importlib import resources
 from typing import Any
 
 import msgspec
-import yaml
 
 from airhockey.envs.specs import IIWA, MALLET, PLANAR, PUCK, TABLE, RobotSpec
 from airhockey.errors import ConfigurationError, unknown
+from airhockey.inputs.plain_yaml import load_yaml
 
 Range = tuple[float, float]
 ROBOTS: dict[str, RobotSpec] = {"planar": PLANAR, "iiwa": IIWA}
@@ -65,6 +65,8 @@ class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     speed: Range | None = None
     angle: Range | None = None
     yaw_rate: Range | None = None
+    reach: float | None = None
+    """The motion is drawn again until a second of it leads to |y| below this, in [m]."""
 
     @property
     def area(self) -> float:
@@ -73,13 +75,32 @@ class Start(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class EnvironmentRules(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What an environment consists of: its arms, its task (a page of `airhockey.envs.tasks`) and the task's starts."""
+    """What an environment consists of: its arms, its task (a page of `airhockey.envs.tasks`) and the task's starts.
+
+    Attributes:
+        also: Another name for it: the one in the scheme of all editions.
+    """
 
     robot: str
     robots: int
     kind: str
     start: tuple[str, ...]
     opponent: str | None = None
+    also: str | None = None
+
+
+class Scene(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """How an edition's scene differs from another's.
+
+    Attributes:
+        mallet_priority: Of the mallets of robot 1 and robot 2 (iiwa) in contacts: the higher one's friction holds.
+        arms_collide: Whether the mallets can touch each other.
+        target: Whether the rim carries a mark that is only seen.
+    """
+
+    mallet_priority: tuple[int, int] = (0, 0)
+    arms_collide: bool = True
+    target: bool = False
 
 
 class TimePenalty(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -113,6 +134,7 @@ class Edition(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     success: Success
     game: GameRules
     starts: dict[str, Start]
+    scene: Scene
     environments: dict[str, EnvironmentRules]
     penalty_points: dict[str, float]
     computation_time: tuple[TimePenalty, ...]
@@ -122,9 +144,20 @@ class Edition(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     def environment(self, name: str) -> EnvironmentRules:
         """The rules of one environment; raises `ConfigurationError` for a name that this edition does not have."""
-        if name not in self.environments:
-            raise unknown(f"environment of edition {self.edition}", name, self.environments)
-        return self.environments[name]
+        return self.environments[self.official_name(name)]
+
+    def official_name(self, name: str) -> str:
+        """The name of an environment in this edition, from that or from the one in the scheme of all editions ("7dof-hit").
+
+        Raises:
+            ConfigurationError: This edition has no such environment.
+        """
+        if name in self.environments:
+            return name
+        others = {rules.also: official for official, rules in self.environments.items() if rules.also is not None}
+        if name in others:
+            return others[name]
+        raise unknown(f"environment of edition {self.edition}", name, [*self.environments, *others])
 
     def starts_of(self, name: str) -> tuple[Start, ...]:
         """The areas in which the puck of an environment starts."""
@@ -160,8 +193,8 @@ def edition(name: str = "2023") -> Edition:
         raise unknown("edition", name, available())
     text = resources.files("airhockey.envs").joinpath(f"assets/editions/{name}.yaml").read_text(encoding="utf-8")
     try:
-        return msgspec.convert(_with_lengths(yaml.safe_load(text)), Edition)
-    except (msgspec.ValidationError, yaml.YAMLError) as error:
+        return msgspec.convert(_with_lengths(load_yaml(text, f"{name}.yaml", aliases=True)), Edition)
+    except msgspec.ValidationError as error:
         raise ConfigurationError(f"edition {name!r} is not valid: {error}") from error
 
 

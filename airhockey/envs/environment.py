@@ -1,21 +1,23 @@
 """The challenge environment: a task or a game on the simulation, as the evaluator, the trainers and the adapters use it."""
 
+import copy
 import pathlib
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs.actions import FLOAT, ActionFormat
 from airhockey.envs.constraints import constraint_slices
-from airhockey.envs.disturbances import Disturbances, load_disturbances
+from airhockey.envs.copying import Copyable
+from airhockey.envs.disturbances import Disturbances, Mismatch, load_disturbances
 from airhockey.envs.editions import ROBOTS, Edition, edition
 from airhockey.envs.info import make_env_info
-from airhockey.envs.kernel.memory import pack, view
+from airhockey.envs.kernel.memory import bytes_from, pack, view
 from airhockey.envs.kernel.opponent import ORDER as OPPONENT_ORDER
 from airhockey.envs.perception import Perception
 from airhockey.envs.plant_mismatch import PlantMismatch
-from airhockey.envs.simulation import Simulation
+from airhockey.envs.simulation import Simulation, SimulationState
 from airhockey.envs.specs import CONTROL_PERIOD, SUBSTEPS, TABLE
 from airhockey.envs.tasks import task, verdicts
 from airhockey.envs.tasks.game import AWAY_SERVES, HOME_SERVES, Game, new_game
@@ -26,8 +28,47 @@ Seed = int | np.random.SeedSequence | None
 Order = int | None
 
 
-class Environment:
+class Episode(NamedTuple):
+    """What a reset decides: the streams' states then, and the plant.
+
+    Attributes:
+        start: State of the generator of starts and serves, after the latest draw.
+        streams: See `State.streams`, where they do not go on at every step; else None.
+        plant: The model's perturbed fields.
+    """
+
+    start: Any
+    streams: Any
+    plant: Any
+
+
+class State(NamedTuple):
+    """A moment of an environment, which `Environment.set_state` goes back to: plain numbers and arrays, to be kept or pickled.
+
+    Attributes:
+        made_for: Name, interpolation orders, edition and disturbances of the environment.
+        simulation: Physics, controllers, filters, the opponent, the latest readings.
+        game: Score, faults, sides, timer. Shape (1,).
+        progress: Steps, verdict, success.
+        episode: What the latest reset decided.
+        streams: States of the random stream of the plant and of each player's perception, where they go on at every step.
+    """
+
+    made_for: tuple[Any, ...]
+    simulation: SimulationState
+    game: NDArray[Any]
+    progress: tuple[int, int, bool]
+    episode: Episode
+    streams: Any
+
+
+class Environment(Copyable):
     """One of the challenge's environments.
+
+    To plan, save a moment and go back to it as often as needed, `state = env.get_state()` and `env.set_state(state)`, or
+    work on a copy, `env.copy()`; pickle and `copy.deepcopy` make such copies, too. Either has the same future to the bit:
+    serve, score, timers, filters, delays, plant and random streams are part of it. A copy shares the original's model where
+    that is the same in all episodes.
 
     An action is what the interpolation order asks of one robot, or a pair of them in the tournament. An observation, in the
     robot frame of the player:
@@ -41,13 +82,15 @@ class Environment:
     | 6+2n … 8+2n | opponent's rod tip x, y, z (scenes with two robots) | m |
 
     Args:
-        name: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare" or "tournament".
+        name: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare" or "tournament"; in the edition of 2025
+            "hit", "hit_single", "defend", "prepare" or "tournament" (or "7dof-hit", "7dof-hit_single" and so on).
         interpolation_order: 1, 2, 3, 4, 5, -1 or None; in the tournament also a pair of them.
         disturbances: A profile's name, the path of a YAML file, or a profile.
         edition_name: The year whose rules apply.
         visual: Draw the arms' links, for viewers; physics is the same.
 
     Attributes:
+        name: The environment's name in its edition.
         env_info: What agents are built with.
         horizon: Control steps in an episode.
         dt: Length of a control step, in [s].
@@ -72,7 +115,7 @@ class Environment:
         self.edition: Edition = edition(edition_name)
         rules = self.edition.environment(name)
         robot = ROBOTS[rules.robot]
-        self.name = name
+        self.name = name = self.edition.official_name(name)
         self.disturbances = load_disturbances(disturbances)
         self.n_agents = rules.robots
         self.task = task(rules.kind)
@@ -91,20 +134,27 @@ class Environment:
             np.array(codes, dtype=np.int64),
             rules.opponent == "figure_of_eight",
             visual,
+            self.edition.scene,
         )
         self.env_info = make_env_info(name, self.simulation, self.edition, self.horizon)
         self.constraint_slices = constraint_slices(self.simulation.arm)
         self._referee = pack(_referee_rules(self.edition), new_game())
-        self.game: Game = view(self._referee, Game)
         rows = max([form.rows for form in self.formats] + [2] * (self.n_agents - self.n_players))
         self._action = np.zeros((self.n_agents, rows, robot.n_joints))
-        self._slots = [self._action[r, : form.rows].reshape(form.shape) for r, form in enumerate(self.formats)]
+        self._make_views()
         self._make_slices()
         self._no_noise = np.zeros((0, self.n_agents, robot.n_joints))
         self._torque_deviation = self.disturbances.torque * self.simulation.arm.torque_limit
         self._mismatch = PlantMismatch(self.simulation.model, robot, self.n_agents)
         self._blurred = self.disturbances.blurs_observations
         self._perceptions = [Perception(self.disturbances, robot.n_joints) for _ in range(self.n_players)]
+        self._start_is_own = True
+        self._episode: Episode | None = None
+        self._draws_at_steps = self._blurred or self.disturbances.torque > 0.0
+        self._made_for = (name, tuple(orders), edition_name, self.disturbances)
+        self._start_random = np.random.RandomState(0)
+        self._plant_random = np.random.default_rng(0)
+        self._perception_randoms: list[np.random.Generator] = []
         self._seed_streams(np.random.SeedSequence())
         self.reset()
 
@@ -157,7 +207,8 @@ class Environment:
         elif self._is_game:
             self.game.side[0] = 0
         if start_random is not None:
-            self._start_random = start_random
+            self.draw_starts_from(start_random)
+        self._episode = None
         self._mismatch.apply(self.disturbances.mismatch, self._plant_random)
         puck = self._draw_puck()
         if state is None:
@@ -191,12 +242,94 @@ class Environment:
         self.verdict, self.succeeded = verdict & ~verdicts.SUCCESS, verdict >= verdicts.SUCCESS
         return self._observe(), 0.0, self.verdict != verdicts.GOING_ON, self._info()
 
+    def get_state(self) -> State:
+        """The present moment; what it holds is its own, and is not changed by anything that the environment does later."""
+        episode = self._episode
+        if episode is None or not self._start_is_own:
+            streams = None if self._draws_at_steps else self._save_streams()
+            episode = self._episode = Episode(self._start_random.get_state(), streams, self._mismatch.save())
+        return State(
+            self._made_for,
+            self.simulation.save(),
+            self._played.copy(),
+            (self.step_count, self.verdict, self.succeeded),
+            episode,
+            self._save_streams() if self._draws_at_steps else None,
+        )
+
+    def set_state(self, state: State) -> None:
+        """Go to a moment that this environment has saved, or another one made with the same arguments, here or elsewhere.
+
+        Raises:
+            ConfigurationError: It was saved of another kind of environment.
+        """
+        if state.made_for is not self._made_for and state.made_for != self._made_for:
+            raise ConfigurationError(
+                f"the state is one of {_told(state.made_for)}, not of {_told(self._made_for)}; "
+                "make both environments with the same arguments"
+            )
+        self.simulation.restore(state.simulation)
+        self._played[:] = state.game
+        self.step_count, self.verdict, self.succeeded = state.progress
+        if state.episode is not self._episode:
+            self._restore_episode(state.episode)
+        if state.streams is not None:
+            self._restore_streams(state.streams)
+
+    state = property(get_state, set_state, doc="The present moment; see `get_state` and `set_state`.")
+
+    def _save_streams(self) -> tuple[Any, ...]:
+        return (self._plant_random.bit_generator.state, *(perception.save() for perception in self._perceptions))
+
+    def _restore_streams(self, streams: tuple[Any, ...]) -> None:
+        self._plant_random.bit_generator.state = streams[0]
+        for perception, saved in zip(self._perceptions, streams[1:], strict=True):
+            perception.restore(saved)
+
+    def _restore_episode(self, episode: Episode) -> None:
+        if not self._start_is_own:  # never rewind a generator that others draw from
+            self._start_random, self._start_is_own = np.random.RandomState(), True
+        self._start_random.set_state(episode.start)
+        self._mismatch.restore(episode.plant)
+        if episode.streams is not None:
+            self._restore_streams(episode.streams)
+        self._episode = episode
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but views and what is shared by the whole process; the generator of starts becomes the copy's own."""
+        kept = {
+            name: value for name, value in self.__dict__.items() if name not in ("task", "game", "_played", "_slots")
+        }
+        return kept | {"_episode": None, "_start_is_own": True}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.task = task(self.edition.environment(self.name).kind)
+        self._make_views()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> "Environment":
+        simulation = self.simulation
+        constant = [self.edition, self.disturbances, self.formats, self._starts, self.constraint_slices]
+        constant += [simulation.robot, simulation.arm, simulation.robot_model]
+        if self.disturbances.mismatch == Mismatch():
+            constant.append(simulation.model)
+        memo.update({id(shared): shared for shared in constant})
+        memo[id(simulation.robot_data)] = simulation.copy_robot_data()  # MuJoCo's own would copy the model, too
+        twin = memo[id(self)] = object.__new__(type(self))
+        twin.__setstate__(copy.deepcopy(self.__getstate__(), memo))
+        return twin
+
     def new_game(self) -> None:
         """Score and faults to zero, and a new draw of the side that serves first."""
+        self._episode = None
         for kept, new in zip(self.game, new_game(), strict=True):
             kept[:] = new
         if self._is_game:
             self.game.serve[0] = self._start_random.choice([HOME_SERVES, AWAY_SERVES])
+
+    def draw_starts_from(self, random: np.random.RandomState) -> None:
+        """Draw all starts from this generator, which others may draw from, too."""
+        self._start_random, self._start_is_own, self._episode = random, False, None
 
     def _seed_streams(self, seed: int | np.random.SeedSequence) -> None:
         """One random stream per owner: the start, the plant, each player's perception."""
@@ -206,6 +339,7 @@ class Environment:
             self._start_random = np.random.RandomState(np.random.MT19937(children[0]))
         else:
             self._start_random = np.random.RandomState(seed)
+        self._start_is_own = True
         self._plant_random = np.random.default_rng(children[1])
         self._perception_randoms = [np.random.default_rng(child) for child in children[2 : 2 + self.n_players]]
         self.new_game()
@@ -226,6 +360,12 @@ class Environment:
         rows = state.reshape(self.n_agents, width)
         puck = rows[-1]  # both robots' rows hold the puck
         self.simulation.reset(puck[:3], puck[3:6], rows[:, 6 : 6 + n].copy(), rows[:, 6 + n : 6 + 2 * n].copy())
+
+    def _make_views(self) -> None:
+        """Views of what Python and compiled code share."""
+        self.game: Game = view(self._referee, Game)
+        self._played = bytes_from(self._referee, Game)
+        self._slots = [self._action[r, : form.rows].reshape(form.shape) for r, form in enumerate(self.formats)]
 
     def _make_slices(self) -> None:
         """Where each reading stands in the simulation's flat array."""
@@ -275,6 +415,12 @@ class Environment:
 def _child(sequence: np.random.SeedSequence, index: int) -> np.random.SeedSequence:
     """A child that depends on nothing but its parent and index (`spawn` counts how often it was called)."""
     return np.random.SeedSequence(sequence.entropy, spawn_key=(*sequence.spawn_key, index))
+
+
+def _told(made_for: tuple[Any, ...]) -> str:
+    """In words, what an environment was made with."""
+    name, orders, year, disturbances = made_for
+    return f"{name} (orders {', '.join(map(str, orders))}; edition {year}; disturbances {disturbances.profile})"
 
 
 def _referee_rules(rules: Edition) -> verdicts.Rules:

@@ -1,4 +1,4 @@
-"""The tasks as Gymnasium environments: `airhockey/3dof-hit-v0`, `airhockey/7dof-defend-v0` and so on.
+"""The tasks as Gymnasium environments: `airhockey/3dof-hit-v0`, `airhockey/7dof-defend-v0`, `airhockey2025/hit-v0` and so on.
 
     import airhockey.envs.gymnasium
     import gymnasium
@@ -25,28 +25,37 @@ except ImportError as error:
         f"this interface needs Gymnasium, which cannot be imported ({error}); install it with: pip install 'airhockey[rl]'"
     ) from error
 
+from airhockey.envs.copying import Copyable
 from airhockey.envs.environment import Environment, Order
+from airhockey.envs.tasks.reward import RewardedState
 
 Array = NDArray[np.float64]
 Reward = Callable[[Any, Array, Any, Array, bool], float]
 
-NAMESPACE = "airhockey"
-TASKS = ("3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare")
+NAMESPACES = {"2023": "airhockey", "2025": "airhockey2025"}
+"""First part of an id, by edition."""
+TASKS = {
+    "2023": ("3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare"),
+    "2025": ("hit", "hit_single", "defend", "prepare"),
+}
 
 
-class AirHockeyEnv(gymnasium.Env[Array, Array]):
+class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
     """One of the challenge's tasks; `airhockey.envs.Environment` says what an observation and an action are.
 
     An observation's space is unbounded: joints overshoot and noise reaches beyond any limit. `info` holds `success`,
-    `constraints_value` and `jerk`. An episode is truncated at the task's horizon.
+    `constraints_value` and `jerk`. An episode is truncated at the task's horizon. It can be copied, pickled, saved and
+    restored as `airhockey.envs.Environment` can.
 
     Args:
-        name: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend" or "7dof-prepare".
+        name: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend" or "7dof-prepare"; in the edition of 2025 "hit",
+            "hit_single", "defend" or "prepare".
         interpolation_order: 1, 2, 3, 4, 5, -1 or None.
         disturbances: A profile's name, the path of a YAML file, or a profile.
         reward: Called with (environment, state, action, next state, absorbing) after each step; the states are base
             observations in world coordinates, as for the official wrapper's `custom_reward_function`. Without one the
             reward is `success` at the end of an episode and 0 before.
+        edition: The year whose rules apply.
 
     Attributes:
         environment: The challenge environment behind it.
@@ -60,8 +69,9 @@ class AirHockeyEnv(gymnasium.Env[Array, Array]):
         interpolation_order: Order = 3,
         disturbances: Any = "ideal",
         reward: Reward | None = None,
+        edition: str = "2023",
     ) -> None:
-        self.environment = Environment(name, interpolation_order, disturbances)
+        self.environment = Environment(name, interpolation_order, disturbances, edition)
         seen = self.environment.env_info["rl_info"].observation_space.shape
         self.observation_space = spaces.Box(-np.inf, np.inf, seen, np.float64)
         low, high = self.environment.formats[0].limits(self.environment.simulation.robot)
@@ -94,13 +104,25 @@ class AirHockeyEnv(gymnasium.Env[Array, Array]):
             reward = float(info["success"]) if absorbing or truncated else 0.0
         return observation, reward, absorbing, truncated, info
 
+    def get_state(self) -> RewardedState:
+        """The present moment; see `airhockey.envs.Environment.get_state`. A reward of this package is part of it."""
+        return RewardedState.of(self.environment, self._reward)
+
+    def set_state(self, state: RewardedState) -> None:
+        """Go to a moment that this environment, or one made with the same arguments, saved."""
+        state.restore(self.environment, self._reward)
+
+    state = property(get_state, set_state, doc="The present moment; see `get_state` and `set_state`.")
+
 
 def register() -> None:
     """Register every task with Gymnasium, once."""
-    for name in TASKS:
-        id_ = f"{NAMESPACE}/{name}-v0"
-        if id_ not in gymnasium.registry:
-            gymnasium.register(id_, entry_point=f"{__name__}:AirHockeyEnv", kwargs={"name": name}, order_enforce=True)
+    for edition, names in TASKS.items():
+        for name in names:
+            id_ = f"{NAMESPACES[edition]}/{name}-v0"
+            if id_ not in gymnasium.registry:
+                made = {"name": name, "edition": edition}
+                gymnasium.register(id_, entry_point=f"{__name__}:AirHockeyEnv", kwargs=made, order_enforce=True)
 
 
 register()

@@ -6,8 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.copying import Copyable
 from airhockey.envs.environment import Environment as ChallengeEnvironment
 from airhockey.envs.info import RLInfo
+from airhockey.envs.tasks.reward import RewardedState
 from airhockey.errors import MissingDependencyError
 
 try:
@@ -23,7 +25,7 @@ Array = NDArray[np.float64]
 Reward = Callable[["BaseEnvironment", Array, Any, Array, bool], float]
 
 
-class BaseEnvironment:
+class BaseEnvironment(Copyable):
     """What the official package calls the base environment: the scene, with observations in world coordinates.
 
     Attributes:
@@ -50,6 +52,13 @@ class BaseEnvironment:
 
     _model, _data = model, data
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name != "env_info"}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.env_info = self._env.env_info
+
     @property
     def info(self) -> Any:
         """MushroomRL's `MDPInfo`."""
@@ -75,11 +84,17 @@ class BaseEnvironment:
         return bool(self._env.verdict != 0)
 
 
-class AirHockeyChallengeWrapper(Environment):
-    """The environment as agents of the 2023 challenge know it.
+class AirHockeyChallengeWrapper(Copyable, Environment):
+    """The environment as agents of the challenge know it: `AirHockeyChallengeWrapper("7dof-hit")`, or of the edition of 2025
+    `AirHockeyChallengeWrapper("hit", edition="2025")`.
+
+    It can be copied, pickled, saved and restored as `airhockey.envs.Environment` can, with the same future. Starts come from
+    NumPy's global generator, as in the official package; but a copy, and a wrapper that went back to a saved moment, must
+    not rewind what others draw from: until `seed` is called, it goes on with a generator of its own, in the state that the
+    global one was in when it was copied or saved.
 
     Args:
-        env: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare" or "tournament".
+        env: An environment's name in its edition; see `airhockey.envs.Environment`.
         custom_reward_function: Called with (base environment, state, action, next state, absorbing) after each step; the
             states are base observations, in world coordinates.
         interpolation_order: 1, 2, 3, 4, 5, -1 or None; in the tournament also a pair of them.
@@ -88,7 +103,7 @@ class AirHockeyChallengeWrapper(Environment):
     Attributes:
         base_env: Has `model`, `data`, `env_info` and `init_state`.
         env_info: What agents are built with.
-        env_name: The name given.
+        env_name: The environment's name in its edition.
     """
 
     def __init__(
@@ -104,13 +119,12 @@ class AirHockeyChallengeWrapper(Environment):
         if isinstance(interpolation_order, list):
             interpolation_order = tuple(interpolation_order)
         self._env = ChallengeEnvironment(env, interpolation_order, disturbances, edition, visual)
-        self.env_name = env
+        self.env_name = self._env.name
         self.env_info = self._env.env_info
         self.env_info["rl_info"] = _mdp_info(self.env_info["rl_info"])
         self.base_env = BaseEnvironment(self._env, self.env_info)
         self._reward = custom_reward_function
-        self._global_start = np.random.mtrand._rand  # agents seed their runs with np.random.seed
-        self._env._start_random = self._global_start
+        self._draw_from_global()
         self._env.new_game()
         super().__init__(self.env_info["rl_info"])
 
@@ -118,6 +132,7 @@ class AirHockeyChallengeWrapper(Environment):
         """Seed the disturbances; starts are drawn from NumPy's global generator, as in the official package."""
         np.random.seed(seed)
         self._env._seed_streams(seed)
+        self._draw_from_global()
 
     def reset(self, state: Array | None = None) -> Array:
         """Begin an episode or, in the tournament, the next serve.
@@ -125,7 +140,7 @@ class AirHockeyChallengeWrapper(Environment):
         Args:
             state: A base observation to restore joints and puck from.
         """
-        return self._env.reset(state=state, start_random=self._global_start)
+        return self._env.reset(state=state)
 
     def step(self, action: Any) -> tuple[Array, float, bool, dict[str, Any]]:
         """Advance by one control step; `info` is that of `airhockey.envs.Environment.step`."""
@@ -138,6 +153,28 @@ class AirHockeyChallengeWrapper(Environment):
 
     def stop(self) -> None:
         """Nothing to stop."""
+
+    def get_state(self) -> RewardedState:
+        """The present moment; see `airhockey.envs.Environment.get_state`. A reward of this package is part of it."""
+        return RewardedState.of(self._env, self._reward)
+
+    def set_state(self, state: RewardedState) -> None:
+        """Go to a moment that this wrapper, or one made with the same arguments, saved."""
+        state.restore(self._env, self._reward)
+
+    state = property(get_state, set_state, doc="The present moment; see `get_state` and `set_state`.")
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name not in ("env_info", "_mdp_info")}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.env_info = self._env.env_info
+        self._mdp_info = self.env_info["rl_info"]
+
+    def _draw_from_global(self) -> None:
+        """Agents seed their runs with `np.random.seed`."""
+        self._env.draw_starts_from(np.random.mtrand._rand)
 
 
 def _mdp_info(info: RLInfo) -> Any:

@@ -2,6 +2,8 @@
 
 import math
 from collections import deque
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +11,15 @@ from numpy.typing import NDArray
 from airhockey.envs.disturbances import Disturbances
 
 Array = NDArray[np.float64]
+
+
+class PerceptionState(NamedTuple):
+    """A moment of a player's perception: its random stream, the episode's biases, what was seen, how long the puck is lost."""
+
+    random: Mapping[str, Any]
+    bias: Array
+    seen: tuple[Array, ...]
+    lost_for: int
 
 
 class Perception:
@@ -38,6 +49,7 @@ class Perception:
     def reset(self, random: np.random.Generator) -> None:
         """Begin an episode: draw its biases; nothing has been seen yet."""
         self._random = random
+        self._bias = np.zeros(self._deviation.size)  # a new one: saved states keep the old
         self._bias[:2] = random.normal(0.0, self._profile.puck.position_bias, 2)
         self._bias[6 : 6 + self._n] = random.normal(0.0, self._profile.joints.position_bias, self._n)
         self._seen.clear()
@@ -52,6 +64,17 @@ class Perception:
         self._lose_track(seen)
         self._seen.append(seen)
         return self._seen[0].copy()
+
+    def save(self) -> PerceptionState:
+        """What the next observations depend on besides the truth."""
+        return PerceptionState(self._random.bit_generator.state, self._bias, tuple(self._seen), self._lost_for)
+
+    def restore(self, state: PerceptionState) -> None:
+        """Go back to what was saved, of this player or of one like it."""
+        self._random.bit_generator.state = state.random
+        self._bias, self._lost_for = state.bias, state.lost_for
+        self._seen.clear()
+        self._seen.extend(state.seen)
 
     def _lose_track(self, seen: Array) -> None:
         """During a loss, show the last state of the puck that was seen."""

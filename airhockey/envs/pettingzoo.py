@@ -1,4 +1,4 @@
-"""A game of two as a PettingZoo environment: `airhockey/tournament-v0`, a parallel one.
+"""A game of two as a PettingZoo environment: `airhockey/tournament-v0` or `airhockey2025/tournament-v0`, a parallel one.
 
 import airhockey.envs.pettingzoo
 import pettingzoo
@@ -22,42 +22,47 @@ except ImportError as error:
     ) from error
 
 from airhockey.envs.actions import ActionFormat
+from airhockey.envs.copying import Copyable
 from airhockey.envs.environment import Environment, Order
 from airhockey.envs.tasks.game import points_reward
 
 Array = NDArray[np.float64]
-ID = "airhockey/tournament-v0"
+IDS = {"2023": "airhockey/tournament-v0", "2025": "airhockey2025/tournament-v0"}
 PLAYERS = ("home", "away")
 
 
-class TournamentEnv(pettingzoo.ParallelEnv[str, Array, Array]):
+class TournamentEnv(Copyable, pettingzoo.ParallelEnv[str, Array, Array]):
     """A whole game, 45,000 control steps: every point, fault or stuck puck is followed by the next serve.
 
     Each player sees the table from its own side; see `airhockey.envs.Environment`. The reward is +1 for a point and −1 for
     the opponent's. A player's `info` holds `constraints_value`, its `score` and `faults`, and `serve`: whether the
-    observation is the first of a new serve (where an agent's `episode_start` is due). The game is truncated at its end.
+    observation is the first of a new serve (where an agent's `episode_start` is due). The game is truncated at its end. It can
+    be copied, pickled, saved and restored as `airhockey.envs.Environment` can.
 
     Args:
         interpolation_order: 1, 2, 3, 4, 5, -1 or None, or a pair of them.
         disturbances: A profile's name, the path of a YAML file, or a profile.
         max_cycles: Length of the game in control steps, if not the rules'.
+        edition: The year whose rules apply.
 
     Attributes:
         environment: The challenge environment behind it.
     """
 
-    metadata = {"name": ID, "render_modes": []}  # noqa: RUF012 - PettingZoo's own way to say so
+    metadata = {"name": IDS["2023"], "render_modes": []}  # noqa: RUF012 - PettingZoo's own way to say so
 
     def __init__(
         self,
         interpolation_order: Order | tuple[Order, Order] = 3,
         disturbances: Any = "ideal",
         max_cycles: int | None = None,
+        edition: str = "2023",
     ) -> None:
-        self.environment = Environment("tournament", interpolation_order, disturbances)
+        self.environment = Environment("tournament", interpolation_order, disturbances, edition)
         self.possible_agents = list(PLAYERS)
         self.agents: list[str] = []
         self.render_mode = None
+        self._step, self._score = 0, [0, 0]
         self._steps = self.environment.horizon if max_cycles is None else max_cycles
         seen = self.environment.env_info["rl_info"].observation_space.shape
         robot = self.environment.simulation.robot
@@ -108,6 +113,16 @@ class TournamentEnv(pettingzoo.ParallelEnv[str, Array, Array]):
             self.agents = []
         return self._split(observation), rewards, dict.fromkeys(PLAYERS, False), dict.fromkeys(PLAYERS, ended), infos
 
+    def get_state(self) -> tuple[Any, ...]:
+        """The present moment; see `airhockey.envs.Environment.get_state`."""
+        return self.environment.get_state(), tuple(self.agents), self._step, tuple(self._score)
+
+    def set_state(self, state: tuple[Any, ...]) -> None:
+        """Go to a moment that this environment, or one made with the same arguments, saved."""
+        environment, agents, self._step, score = state
+        self.environment.set_state(environment)
+        self.agents, self._score = list(agents), list(score)
+
     def _split(self, observation: Array) -> dict[str, Array]:
         half = observation.size // 2
         return {"home": observation[:half], "away": observation[half:]}
@@ -119,9 +134,10 @@ def _box(form: ActionFormat, robot: Any) -> spaces.Box:
 
 
 def register() -> None:
-    """Register the game with PettingZoo, once."""
-    if ID not in pettingzoo.parallel_registry:
-        pettingzoo.register("parallel", ID, f"{__name__}:TournamentEnv")
+    """Register the games with PettingZoo, once."""
+    for edition, id_ in IDS.items():
+        if id_ not in pettingzoo.parallel_registry:
+            pettingzoo.register("parallel", id_, f"{__name__}:TournamentEnv", kwargs={"edition": edition})
 
 
 register()

@@ -1,12 +1,18 @@
 """A plant that differs from its model: masses, friction, rod length and rims, drawn anew for every episode."""
 
+from typing import Any
+
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from airhockey.envs.disturbances import Mismatch
 from airhockey.envs.specs import RobotSpec
 
 _FIELDS = ("body_mass", "body_inertia", "body_pos", "dof_damping", "dof_frictionloss", "geom_solref")
+
+Plant = dict[str, NDArray[np.float64]]
+"""An episode's values of those fields of the model."""
 
 
 class PlantMismatch:
@@ -19,7 +25,9 @@ class PlantMismatch:
     """
 
     def __init__(self, model: mujoco.MjModel, robot: RobotSpec, n_robots: int) -> None:
-        self._model, self._scratch = model, mujoco.MjData(model)
+        self._model = model
+        self._perturbed = False
+        self._scratch: Any = None
         self._nominal = {field: getattr(model, field).copy() for field in _FIELDS}
         names = [f"{robot.prefix}_{number}" for number in range(1, n_robots + 1)]
         self._links = np.array(
@@ -52,4 +60,26 @@ class PlantMismatch:
             model.body_pos[rod] = offset * (1.0 + random.normal(0.0, mismatch.rod_length) / np.linalg.norm(offset))
         model.geom_solref[self._rims, 1] *= random.uniform(*mismatch.rim_damping)
         model.dof_damping[-3:] *= random.uniform(*mismatch.puck_damping)
-        mujoco.mj_setConst(model, self._scratch)
+        self._settle()
+
+    def save(self) -> Plant | None:
+        """The episode's plant, or None for the nominal one."""
+        return {field: getattr(self._model, field).copy() for field in _FIELDS} if self._perturbed else None
+
+    def restore(self, plant: Plant | None) -> None:
+        """Go back to an episode's plant."""
+        if plant is None and not self._perturbed:
+            return
+        for field, values in (self._nominal if plant is None else plant).items():
+            getattr(self._model, field)[:] = values
+        self._settle()
+
+    def _settle(self) -> None:
+        """Derive what MuJoCo keeps of masses and inertias."""
+        self._perturbed = True
+        if self._scratch is None:
+            self._scratch = mujoco.MjData(self._model)
+        mujoco.mj_setConst(self._model, self._scratch)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return self.__dict__ | {"_scratch": None}

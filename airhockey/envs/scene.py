@@ -14,6 +14,7 @@ import mujoco
 import numpy as np
 
 from airhockey.envs import appearance
+from airhockey.envs.editions import Scene
 from airhockey.envs.specs import MALLET, PUCK, STRIKER, TABLE, TIMESTEP, FixedBody, Link, RobotSpec
 
 RIM_WIDTH = 0.09
@@ -41,14 +42,18 @@ _HALF_TURN = (0.0, 0.0, 0.0, 1.0)
 _ALONG_X = (np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0)
 
 
-def game_model(robot: RobotSpec, n_robots: int, visual: bool = True) -> mujoco.MjModel:
+def game_model(
+    robot: RobotSpec, n_robots: int, visual: bool = True, edition_scene: Scene | None = None
+) -> mujoco.MjModel:
     """A compiled scene: `n_robots` arms, the table and the puck.
 
     Args:
         robot: Which arm plays.
         n_robots: 1 or 2.
         visual: Also draw the links of the arms. Geoms that are only seen change nothing in the physics.
+        edition_scene: What is particular to an edition; by default nothing, as in 2023.
     """
+    particular = Scene() if edition_scene is None else edition_scene
     spec = _empty_spec()
     spec.worldbody.add_geom(
         name="floor",
@@ -69,18 +74,51 @@ def game_model(robot: RobotSpec, n_robots: int, visual: bool = True) -> mujoco.M
     for number in range(1, n_robots + 1):
         _exclude_robot(spec, robot, number)
     spec.add_exclude(bodyname1="puck", bodyname2="table_surface")
+    _make_particular(spec, robot, n_robots, particular)
     if visual:
         appearance.add_surroundings(spec)
     return spec.compile()
 
 
+def _make_particular(spec: Any, robot: RobotSpec, n_robots: int, particular: Scene) -> None:
+    """What an edition has of its own: how mallets meet the puck and each other, and the mark on the rim."""
+    mallets = (
+        [f"{robot.prefix}_{number}" for number in range(1, n_robots + 1)] if robot.universal_height is not None else []
+    )
+    for name, priority in zip(mallets, particular.mallet_priority, strict=False):
+        spec.geom(f"{name}/ee").priority = priority
+    if len(mallets) == 2 and not particular.arms_collide:  # nothing else of an iiwa collides
+        spec.add_exclude(bodyname1=f"{mallets[0]}/striker_mallet", bodyname2=f"{mallets[1]}/striker_mallet")
+    if particular.target:
+        spec.body("rim").add_geom(
+            name="target",
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            size=(0.01, 0, 0),
+            pos=(0, 0, -0.05),
+            contype=0,
+            conaffinity=0,
+            rgba=appearance.PUCK,
+        )
+
+
 def robot_model(robot: RobotSpec) -> mujoco.MjModel:
     """The arm alone, base at the origin, without the mallet: what the joint controller and the agents know."""
+    return _robot_spec(robot).compile()
+
+
+def robot_xml(robot: RobotSpec) -> str:
+    """The same as MJCF, for agents in an interpreter of their own."""
+    spec = _robot_spec(robot)
+    spec.compile()
+    return str(spec.to_xml())
+
+
+def _robot_spec(robot: RobotSpec) -> Any:
     spec = _empty_spec()
     base = spec.worldbody.add_body(name=f"{robot.prefix}_1/base")
     _add_robot(spec, base, robot, 1, visual=False, playing=False)
     _add_outline(spec, robot)
-    return spec.compile()
+    return spec
 
 
 def _empty_spec() -> Any:

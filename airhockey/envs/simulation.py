@@ -4,31 +4,42 @@ It knows nothing of tasks, and nothing of noise beyond adding the torques it is 
 does: compiled code knows only their addresses.
 """
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs import scene
+from airhockey.envs.copying import Copyable
+from airhockey.envs.editions import Scene
 from airhockey.envs.kernel.arm import Arm, arm_from_model
 from airhockey.envs.kernel.control_step import BAD_ACTION, DONE, Players, control_step
 from airhockey.envs.kernel.controller import Controller, filter_velocity, new_controller
 from airhockey.envs.kernel.engine import last_warnings
 from airhockey.envs.kernel.kinematics import WorkSpace, link_rotations, work_space
-from airhockey.envs.kernel.memory import pack, view
+from airhockey.envs.kernel.memory import bytes_from, pack, view
 from airhockey.envs.kernel.observation import Readings, read, readings_of, readings_size
 from airhockey.envs.kernel.opponent import Opponent, reset_opponent
-from airhockey.envs.kernel.plant import Addresses, Geometry, Plant, addresses_of
+from airhockey.envs.kernel.plant import Geometry, Plant, addresses_of
 from airhockey.envs.kernel.universal_joint import clip_angle, desired_angles, rod_axes
+from airhockey.envs.physics import Physics, PhysicsState
 from airhockey.envs.specs import RobotSpec
 from airhockey.errors import ActionError, SimulationError
 
 Array = NDArray[np.float64]
 
 
-class Simulation:
-    """A scene with its controllers.
+class SimulationState(NamedTuple):
+    """A moment of a simulation: the physics, what controllers and opponent remember, and the latest readings."""
+
+    physics: PhysicsState
+    memory: NDArray[np.uint8]
+    flat: Array
+
+
+class Simulation(Copyable):
+    """A scene with its controllers. It can be copied and pickled: the copy has models and data of its own.
 
     Args:
         robot: Which arm plays.
@@ -36,6 +47,7 @@ class Simulation:
         orders: Interpolation order of each robot, as compiled code wants it. Shape (n_robots,).
         moving_opponent: Robot 2 follows the figure of eight.
         visual: Draw the arms' links.
+        edition_scene: What is particular to the edition's scene.
 
     Attributes:
         model, data: MuJoCo's. Changing them changes the simulation.
@@ -51,30 +63,27 @@ class Simulation:
         orders: NDArray[np.int64],
         moving_opponent: bool = False,
         visual: bool = False,
+        edition_scene: Scene | None = None,
     ) -> None:
         self.robot, self.n_robots = robot, n_robots
-        self.model = scene.game_model(robot, n_robots, visual)
-        self.data = mujoco.MjData(self.model)
+        self.model = scene.game_model(robot, n_robots, visual, edition_scene)
         self.robot_model = scene.robot_model(robot)
         self.robot_data = mujoco.MjData(self.robot_model)
+        data = mujoco.MjData(self.model)
         self.arm: Arm = arm_from_model(robot, self.robot_model)
         n = robot.n_joints
         self._n_constraints = 4 * n + (7 if self.arm.universal_joint else 5)
         self._size = readings_size(n_robots, n, self._n_constraints)
-        addresses, geometry = addresses_of(self.model, self.data), self._geometry()
         self._memory = pack(
-            addresses,
-            geometry,
+            addresses_of(self.model, data),
+            self._geometry(data),
             self.arm,
+            Players(moving_opponent, self._n_constraints, orders),
             new_controller(n_robots, n),
             work_space(n),
             Opponent(np.zeros(1), np.zeros(n), np.zeros(3)),
-            Players(moving_opponent, self._n_constraints, orders),
         )
-        self._controller: Controller = view(self._memory, Controller)
-        self._work: WorkSpace = view(self._memory, WorkSpace)
-        self._opponent: Opponent = view(self._memory, Opponent)
-        self._plant = self._make_plant(addresses, geometry)
+        self._bind(data)
         self._start = np.tile(np.array(robot.start), (n_robots, 1))
         self._striker_start = [self._level_striker(row) for row in self._start] if self.arm.universal_joint else []
         self.reset(np.zeros(3), np.zeros(3))
@@ -154,11 +163,55 @@ class Simulation:
             f"(largest entry {np.abs(action).max():.3g}); send positions in [rad] and velocities in [rad/s]"
         )
 
-    def _geometry(self) -> Geometry:
+    def save(self) -> SimulationState:
+        """All that the next steps depend on."""
+        return SimulationState(self._physics.save(), self._remembered.copy(), self.flat.copy())
+
+    def restore(self, state: SimulationState) -> None:
+        """Go to a moment that this simulation, or one like it, saved."""
+        self._physics.restore(state.physics)
+        self._remembered[:] = state.memory
+        self.flat = state.flat.copy()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Everything but addresses, views and MuJoCo's data, whose content is added."""
+        views = ("data", "_physics", "_controller", "_work", "_opponent", "_plant", "_remembered")
+        kept = {name: value for name, value in self.__dict__.items() if name not in views}
+        return kept | {"_saved": self._physics.save()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        state = dict(state)
+        saved = state.pop("_saved")
+        self.__dict__.update(state)
+        self._bind(mujoco.MjData(self.model))
+        self._physics.restore(saved)
+
+    def copy_robot_data(self) -> Any:
+        """The robot-only model's data, copied, for the same model."""
+        data = mujoco.MjData(self.robot_model)
+        mujoco.mj_copyData(data, self.robot_model, self.robot_data)
+        return data
+
+    def _bind(self, data: Any) -> None:
+        """Simulate with this data: make every address and view anew."""
+        self.data = data
+        self._physics = Physics(data)
+        addresses = addresses_of(self.model, data)._asdict()
+        for name, address in addresses.items():
+            self._memory[name] = address
+        self._controller: Controller = view(self._memory, Controller)
+        self._work: WorkSpace = view(self._memory, WorkSpace)
+        self._opponent: Opponent = view(self._memory, Opponent)
+        arrays = {"ctrl": data.ctrl, "qpos": data.qpos, "qvel": data.qvel, "xpos": data.xpos}
+        known = addresses | view(self._memory, Geometry)._asdict() | arrays
+        self._plant = Plant(**{name: known[name] for name in Plant._fields})
+        self._remembered = bytes_from(self._memory, Controller)  # what comes before is the same at all times
+
+    def _geometry(self, data: Any) -> Geometry:
         model, robot = self.model, self.robot
         bases = robot.base_positions[: self.n_robots]
         tips = [model.body(f"{robot.prefix}_{r + 1}/{robot.end_effector}").id for r in range(self.n_robots)]
-        counts = self.data.warning.number
+        counts = data.warning.number
         return Geometry(
             tips=np.array(tips, dtype=np.int64),
             sides=np.array([1.0, -1.0][: self.n_robots]),
@@ -171,12 +224,6 @@ class Simulation:
             n_warnings=counts.size,
             warning_stride=counts.strides[0] // counts.itemsize,
         )
-
-    def _make_plant(self, addresses: Addresses, geometry: Geometry) -> Plant:
-        """The plant with Python's views of MuJoCo's arrays."""
-        data, known = self.data, addresses._asdict() | geometry._asdict()
-        arrays = {"ctrl": data.ctrl, "qpos": data.qpos, "qvel": data.qvel, "xpos": data.xpos}
-        return Plant(**arrays, **{name: known[name] for name in Plant._fields if name not in arrays})
 
     def _level_striker(self, joint_position: Array) -> tuple[float, float]:
         """Angles of the universal joint that level the mallet, in [rad]."""

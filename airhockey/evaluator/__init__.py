@@ -8,8 +8,8 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from airhockey.evaluator.engines.engine import Engine, InProcess
-    from airhockey.evaluator.engines.processes import Processes, engine_for
+    from airhockey.evaluator.engines.engine import Engine, InProcess, engine_for
+    from airhockey.evaluator.engines.processes import Processes
     from airhockey.evaluator.evaluation import begin, evaluate, play_episode, report, resume
     from airhockey.evaluator.runs.records import EpisodeRecord, Options, RunResult, TaskResult
 
@@ -22,7 +22,7 @@ _HOMES = {
     "RunResult": "runs.records",
     "TaskResult": "runs.records",
     "begin": "evaluation",
-    "engine_for": "engines.processes",
+    "engine_for": "engines.engine",
     "evaluate": "evaluation",
     "play_episode": "evaluation",
     "report": "evaluation",

@@ -1,8 +1,10 @@
 """What can be said about a run's options before anything is built or written."""
 
+import re
 from pathlib import Path
 
 from airhockey.agents import AGENTS
+from airhockey.agents.control.parameters import parsed
 from airhockey.agents.submission import is_submission, submission_config
 from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.envs.disturbances import load_disturbances
@@ -27,6 +29,7 @@ def check_options(options: Options) -> None:
     if options.episodes < 1:
         raise ConfigurationError(f"the number of episodes must be positive, not {options.episodes}")
     check_seed(options.seed)
+    check_agent_seed(options.agent_seed)
     if options.interpolation_order not in ORDERS:
         raise unknown("interpolation order", options.interpolation_order, map(str, ORDERS))
     if options.clock not in CLOCKS:
@@ -38,6 +41,7 @@ def check_options(options: Options) -> None:
     load_disturbances(options.disturbances)
     check_agent(options.agent, options.environments)
     _check_parameters(options)
+    _check_settings(options)
     choose(options.agent, options.isolate)
     if options.patience <= 0.0:
         raise ConfigurationError(f"the patience must be positive, not {options.patience:g} s")
@@ -52,6 +56,21 @@ def _check_parameters(options: Options) -> None:
             f"agent {options.agent!r} reads no parameter file; those that do: {', '.join(RULE_BASED)}"
         )
     thesis_parameters(options.parameters)
+
+
+def _check_settings(options: Options) -> None:
+    """Only our own players have this controller, and it must have these parameters."""
+    if options.settings and options.agent not in AGENTS:
+        raise ConfigurationError(
+            f"--set is for the players of airhockey ({', '.join(AGENTS)}), not for {options.agent!r}"
+        )
+    parsed(options.settings)
+
+
+def check_agent_seed(secret: str | None) -> None:
+    """The secret of the agents' seeds is a hexadecimal number; raises `ConfigurationError` where it is not."""
+    if secret is not None and not re.fullmatch(r"[0-9a-f]{1,64}", secret):
+        raise ConfigurationError(f"the agents' seed must be 1 to 64 hexadecimal digits, not {secret!r}")
 
 
 def check_seed(seed: int) -> None:
@@ -80,6 +99,7 @@ def check_game_options(options: GameOptions) -> None:
         raise ConfigurationError(f"the number of steps must be positive, not {options.steps}")
     if options.clock not in CLOCKS:
         raise unknown("clock", options.clock, CLOCKS)
+    check_agent_seed(options.agent_seed)
     if options.variant not in VARIANTS:
         raise unknown("variant of the rules", options.variant, VARIANTS)
     load_disturbances(options.disturbances)

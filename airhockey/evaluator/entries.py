@@ -4,12 +4,12 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import msgspec
-import yaml
 
 from airhockey.agents import AGENTS
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.isolation.modes import REMOTE
 from airhockey.evaluator.runs.records import Order
+from airhockey.inputs.plain_yaml import read_yaml
 
 NAME_LETTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._")
 
@@ -65,12 +65,10 @@ def with_replacements(entries: Iterable[Entry], replacements: Mapping[str, str])
 def read_entries(path: Path) -> list[Entry]:
     """Entries from a YAML file: a list, or a mapping with the key `entries`; paths are relative to the file."""
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+        content = read_yaml(path)
         listed = content if isinstance(content, dict) else {"entries": content}
         entries = msgspec.convert(listed, EntriesFile).entries
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigurationError(f"cannot read the entries in {str(path)!r}: {error}") from error
-    except (yaml.YAMLError, msgspec.ValidationError) as error:
+    except msgspec.ValidationError as error:
         raise ConfigurationError(
             f"the entries in {str(path)!r} are not valid: {' '.join(str(error).split())}"
         ) from error

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.envs.editions import edition
 from airhockey.evaluator.checks import check_options
-from airhockey.evaluator.engines.engine import Engine, InProcess, JobFailed
+from airhockey.evaluator.engines.engine import Engine, InProcess
+from airhockey.evaluator.engines.pool import JobFailed
 from airhockey.evaluator.judging import tasks as judging
 from airhockey.evaluator.play.episode import EpisodePlayer, failed
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
@@ -109,7 +110,6 @@ def _task_result(path: Path, options: Options, env: str, records: list[EpisodeRe
         penalty=verdict.penalty,
         deployability=verdict.deployability,
         violations=verdict.violations,
-        late=verdict.late,
         computation_time=_run_time(read_steps(path / TRAJECTORIES, env, "computation_time")),
         agent_errors=verdict.failures,
     )

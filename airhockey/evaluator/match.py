@@ -8,7 +8,8 @@ import msgspec
 
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.checks import check_agent, check_game_options, check_seed
-from airhockey.evaluator.engines.engine import Engine, InProcess, JobFailed
+from airhockey.evaluator.engines.engine import Engine, InProcess
+from airhockey.evaluator.engines.pool import JobFailed
 from airhockey.evaluator.judging.games import tally
 from airhockey.evaluator.play.game import Game, GamePlayer, live_file, lost
 from airhockey.evaluator.play.seeding import game_seed

@@ -8,7 +8,7 @@ from pathlib import Path
 from airhockey import __version__
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.analysis.game import GameAnalysis, analyse_game
-from airhockey.evaluator.runs.reader import BROKEN, Match, Nothing, Run, Source, Tournament, open_source, reason
+from airhockey.evaluator.runs.reader import BROKEN, Match, Run, Source, Tournament, Unreadable, open_source, reason
 from airhockey.reporting import words
 from airhockey.reporting.episodes import TaskData, read_task
 from airhockey.reporting.markup import Markup
@@ -55,7 +55,7 @@ def report(
     """
     sources = _opened(paths, say)
     notes = [f"{source.path}: {note}" for source in sources for note in source.notes]
-    usable = [source for source in sources if not isinstance(source, Nothing)]
+    usable = [source for source in sources if not isinstance(source, Unreadable)]
     if not usable:
         raise ConfigurationError(f"there is nothing to report on: {'; '.join(notes)}")
     labels = labels_of(usable)

@@ -9,7 +9,7 @@ from airhockey import __version__
 from airhockey.envs.editions import available, edition
 from airhockey.errors import AirHockeyError, ConfigurationError
 from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES
-from airhockey.evaluator.runs.reader import MANIFESTS, Match, Nothing, Run, Source, Tournament, open_source
+from airhockey.evaluator.runs.reader import MANIFESTS, Match, Run, Source, Tournament, Unreadable, open_source
 from airhockey.reporting import words
 from airhockey.reporting.document import report
 from airhockey.reporting.entries import boards, in_order, phases
@@ -50,7 +50,7 @@ def write_site(folder: Path, site: Path, say: Say = lambda _: None) -> tuple[int
     for path in results_below(folder, site):
         say(f"reading {path}")
         sources.append(open_source(path))
-    if all(isinstance(source, Nothing) for source in sources):
+    if all(isinstance(source, Unreadable) for source in sources):
         lost = "; ".join(f"{source.path}: {note}" for source in sources for note in source.notes)
         raise ConfigurationError(f"no results below {str(folder)!r}" + (f": {lost}" if lost else ""))
     try:
@@ -63,7 +63,7 @@ def results_below(folder: Path, site: Path) -> Iterator[Path]:
     """Folders of results, in the order of their paths; links to folders, hidden folders and the site are passed over."""
     skipped = site.resolve()
     for here, below, files in os.walk(folder):
-        if set(MANIFESTS) & set(files):
+        if any(name in MANIFESTS and not (Path(here) / name).is_symlink() for name in files):
             below.clear()
             yield Path(here)
         below[:] = sorted(
@@ -82,7 +82,7 @@ class _Site:
 
     def __init__(self, folder: Path, sources: Sequence[Source], site: SiteFolder) -> None:
         self.folder, self.sources, self.site = folder, sources, site
-        self.usable = [source for source in sources if not isinstance(source, Nothing)]
+        self.usable = [source for source in sources if not isinstance(source, Unreadable)]
         self.slugs = {id(source): _slug_below(folder, source.path) for source in self.usable}
         runs = [source for source in self.usable if isinstance(source, Run)]
         self.boards = boards(Task(run, run.agent, env, run.of(env)) for run in runs for env in run.environments)
@@ -180,4 +180,4 @@ def _slug_below(folder: Path, path: Path) -> str:
 
 
 def _videos(source: Source) -> list[Path]:
-    return sorted(file for file in source.path.glob("*.mp4") if file.is_file())
+    return sorted(file for file in source.path.glob("*.mp4") if file.is_file() and not file.is_symlink())

@@ -46,7 +46,9 @@ class SiteFolder:
         self.written.append(name)
 
     def copy(self, source: Path, name: str) -> None:
-        """Copy a file, unless an earlier site has it already."""
+        """Copy a file, unless an earlier site has it already; never what a link points to."""
+        if source.is_symlink():
+            return
         target = self.path / name
         target.parent.mkdir(parents=True, exist_ok=True)
         if not target.exists() or target.stat().st_mtime < source.stat().st_mtime:

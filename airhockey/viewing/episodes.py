@@ -10,7 +10,7 @@ from airhockey.envs.editions import ROBOTS, edition
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.recording import Moment, Recording
-from airhockey.viewing.scene_view import Stage
+from airhockey.viewing.scene_view import SceneView
 
 Array = NDArray[np.float64]
 ACHIEVED = {"hit": ("goal", "goal"), "defend": ("save", "puck stopped"), "prepare": ("prepared", "puck in reach")}
@@ -81,7 +81,7 @@ def episode_recording(
     joints = seen[:, None, 6 : 6 + n]
     if rules.robots == 2:
         tips = seen[:, 6 + 2 * n : 9 + 2 * n] + base
-        joints = np.concatenate([joints, Stage(env).follow_tips(1, tips)[:, None]], axis=1)
+        joints = np.concatenate([joints, SceneView(env).follow_tips(1, tips)[:, None]], axis=1)
     values = {key.removeprefix(CONSTRAINTS): a for key, a in trajectory.items() if key.startswith(CONSTRAINTS)}
     what, ending = _ending(env, outcome)
     moments = violations(values, 0)

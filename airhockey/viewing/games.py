@@ -54,12 +54,16 @@ class GameNarrator:
 
     def caption(self, step: int) -> Caption:
         """See `Narrator`."""
-        latest = bisect.bisect_right(self._counts, step, key=lambda count: count[0]) - 1
-        _, score, faults, penalty = self._counts[latest]
-        told = bisect.bisect_right(self.moments, step, key=lambda moment: moment.step)
-        recent = [moment for moment in self.moments[max(0, told - LOOKED_AT) : told] if step - moment.step < NEWS_STEPS]
+        counted = bisect.bisect_right(self._counts, step, key=lambda count: count[0]) - 1
+        _, score, faults, penalty = self._counts[counted]
+        happened = bisect.bisect_right(self.moments, step, key=lambda moment: moment.step)
+        recent = [
+            moment
+            for moment in self.moments[max(0, happened - LOOKED_AT) : happened]
+            if step - moment.step < NEWS_STEPS
+        ]
         violations = [moment.text for moment in recent if moment.what == "violation"]
-        alarm, news = (violations[-1] if violations else ""), news_of(recent)
+        alarm, news = (violations[-1] if violations else ""), latest(recent)
         return Caption(self.title, self.players, step * CONTROL_PERIOD, score, faults, penalty, news=news, alarm=alarm)
 
 
@@ -80,7 +84,7 @@ def game_recording(name: str, film: Array, record: GameRecord | None) -> Recordi
     rows = film.reshape(-1, 2, WIDTH)
     joints = rows[:, :, 6 : 6 + N]
     events = record.events if record else ()
-    moments = [told(event, players) for event in events]
+    moments = [moment_of(event, players) for event in events]
     for shot in shots_of(film, events):
         if shot.outcome == "saved" and shot.touched is not None:
             k = 1 - SIDES.index(shot.side)
@@ -94,14 +98,14 @@ def game_recording(name: str, film: Array, record: GameRecord | None) -> Recordi
     )  # fmt: skip
 
 
-def news_of(recent: Sequence[Moment]) -> str:
+def latest(recent: Sequence[Moment]) -> str:
     """What to say of what happened lately: the latest, but of a serve only where nothing led to it."""
     said = [moment for moment in recent if moment.what not in ("violation", "held")]
     telling = [moment for moment in said if moment.what != "serve"] or said
     return telling[-1].text if telling else ""
 
 
-def told(event: Event, players: Sequence[str]) -> Moment:
+def moment_of(event: Event, players: Sequence[str]) -> Moment:
     """The referee's event as a moment."""
     k = None if event.who is None else SIDES.index(event.who)
     name = "" if k is None else players[k]

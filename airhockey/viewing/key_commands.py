@@ -1,22 +1,22 @@
-"""What the panel says, kept until it is asked for. Lives on the show's side of MuJoCo's viewer."""
+"""Commands of the panel's buttons and keys, collected by the process that plays back until it takes them."""
 
 from mujoco.studio import messages, plugin
 
 from airhockey.viewing.panel import Command
 
 
-class Ears(plugin.SimPlugin):
+class KeyCommands(plugin.SimPlugin):
     """Collects the panel's commands."""
 
     def __init__(self) -> None:
-        self._heard: list[tuple[str, int]] = []
+        self._collected: list[tuple[str, int]] = []
 
     @messages.handler
     def on_command(self, command: Command) -> None:
         """Keep it."""
-        self._heard.append((command.command, command.step))
+        self._collected.append((command.command, command.step))
 
     def take(self) -> list[tuple[str, int]]:
-        """What was said since the last time: commands, with the step where one is meant."""
-        heard, self._heard = self._heard, []
-        return heard
+        """The commands since the last time, each with its step where it has one."""
+        collected, self._collected = self._collected, []
+        return collected

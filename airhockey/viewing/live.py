@@ -1,4 +1,4 @@
-"""Live shows: an agent at a task, or two in a game, played while one looks on."""
+"""Live playback: an agent at a task, or two in a game, played while one looks on."""
 
 from dataclasses import replace
 from typing import Any
@@ -17,10 +17,10 @@ from airhockey.evaluator.runs.game_records import GameJob, GameOptions
 from airhockey.evaluator.runs.records import Job, Options
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.episodes import ACHIEVED
-from airhockey.viewing.games import LOOKED_AT, NEWS_STEPS, news_of, told
+from airhockey.viewing.games import LOOKED_AT, NEWS_STEPS, latest, moment_of
 from airhockey.viewing.marks import TARGETS, Mark, path, target
 from airhockey.viewing.playback import predicted_path
-from airhockey.viewing.scene_view import Stage
+from airhockey.viewing.scene_view import SceneView
 
 Array = NDArray[np.float64]
 AHEAD = 0.15
@@ -40,16 +40,16 @@ class LiveTask:
     def __init__(self, options: Options, episode: int = 0) -> None:
         self._options, self._name = options, options.environments[0]
         self._player = EpisodePlayer(options, load_disturbances(options.disturbances))
-        self.stage = Stage(self._name, options.edition)
+        self.scene_view = SceneView(self._name, options.edition)
         self.begin(episode)
 
     @property
     def episodes(self) -> int | None:
-        """See `Show`."""
+        """See `Playback`."""
         return None
 
     def begin(self, episode: int) -> None:
-        """See `Show`."""
+        """See `Playback`."""
         self.episode, self.step = max(episode, 0), 0
         rollout = self._rollout = self._player.open(Job(self._name, self.episode))
         (self._seat,) = rollout.seats
@@ -59,10 +59,10 @@ class LiveTask:
         self._now: list[str] = []
         self._violated: set[str] = set()
         rollout.begin()
-        self.stage.copy_state(rollout.env.simulation.data)
+        self.scene_view.copy_state(rollout.env.simulation.data)
 
     def advance(self) -> bool:
-        """See `Show`."""
+        """See `Playback`."""
         rollout = self._rollout
         if rollout.over or self.step >= self.steps or not rollout.step():
             return False
@@ -70,14 +70,14 @@ class LiveTask:
         values = rollout.info["constraints_value"].items()
         self._now = [name for name, value in values if (np.asarray(value) > 0.0).any()]
         self._violated.update(self._now)
-        self.stage.copy_state(rollout.env.simulation.data)
+        self.scene_view.copy_state(rollout.env.simulation.data)
         return True
 
     def seek(self, step: int) -> None:
         """What is live cannot be taken back."""
 
     def caption(self) -> Caption:
-        """See `Show`."""
+        """See `Playback`."""
         options = self._options
         points = sum(self._rollout.env.edition.penalty_points.get(name, 0.0) for name in self._violated)
         alarm = "violates " + ", ".join(self._now) if self._now else ""
@@ -92,8 +92,8 @@ class LiveTask:
         )
 
     def marks(self) -> list[Mark]:
-        """See `Show`."""
-        return marks_of(self.stage, self._rollout)
+        """See `Playback`."""
+        return marks_of(self.scene_view, self._rollout)
 
     def close(self) -> None:
         """Tell the agent that it is over."""
@@ -125,16 +125,16 @@ class LiveGame:
         self._agents, self._options, self._seed = (home, away), options, seed
         self._player = GamePlayer(options, load_disturbances(options.disturbances))
         self._game: Any = None
-        self.stage = Stage("tournament", options.edition)
+        self.scene_view = SceneView("tournament", options.edition)
         self.begin(episode)
 
     @property
     def episodes(self) -> int | None:
-        """See `Show`."""
+        """See `Playback`."""
         return None
 
     def begin(self, episode: int) -> None:
-        """See `Show`."""
+        """See `Playback`."""
         self.episode, self.step, self.steps = max(episode, 0), 0, self._options.steps
         key = str(self.episode)
         self.close()
@@ -147,15 +147,15 @@ class LiveGame:
         if failed:
             raise AirHockeyError(f"there is no game to watch: {failed[0]}")
         self._game.begin()
-        self.stage.copy_state(self._game.env.simulation.data)
+        self.scene_view.copy_state(self._game.env.simulation.data)
 
     def advance(self) -> bool:
-        """See `Show`."""
+        """See `Playback`."""
         if self._game.over:
             return False
         self._game.step()
         self.step = self._game.rollout.steps
-        self.stage.copy_state(self._game.env.simulation.data)
+        self.scene_view.copy_state(self._game.env.simulation.data)
         return True
 
     def seek(self, step: int) -> None:
@@ -167,10 +167,12 @@ class LiveGame:
             seat.stop()
 
     def caption(self) -> Caption:
-        """See `Show`."""
+        """See `Playback`."""
         game = self._game
         home, away = game.penalties
-        recent = [told(event, self._names) for event in game.events[-LOOKED_AT:] if self.step - event.step < NEWS_STEPS]
+        recent = [
+            moment_of(event, self._names) for event in game.events[-LOOKED_AT:] if self.step - event.step < NEWS_STEPS
+        ]
         caption = Caption(
             f"game {self.episode}, seed {self._seed}",
             self._names,
@@ -179,7 +181,7 @@ class LiveGame:
             (game.env.faults[0], game.env.faults[1]),
             (home.count.points, away.count.points),
             phases=tuple(seat.phase for seat in game.seats),
-            news=news_of(recent),
+            news=latest(recent),
         )
         violated = [
             f"{name} violates {constraint}"
@@ -193,16 +195,16 @@ class LiveGame:
         return replace(caption, alarm="; ".join(failures or violated))
 
     def marks(self) -> list[Mark]:
-        """See `Show`."""
-        return marks_of(self.stage, self._game.rollout)
+        """See `Playback`."""
+        return marks_of(self.scene_view, self._game.rollout)
 
 
-def marks_of(stage: Stage, rollout: Rollout) -> list[Mark]:
+def marks_of(scene_view: SceneView, rollout: Rollout) -> list[Mark]:
     """Where the puck will go, and where each agent wants its mallet once it has acted."""
     base = rollout.env.base_observation
     marks = predicted_path(base[:3], base[3:6])
     for k, seat in enumerate(rollout.seats if rollout.steps else ()):
-        marks += mallet_target(stage, k, seat.target, seat.action)
+        marks += mallet_target(scene_view, k, seat.target, seat.action)
     return marks
 
 
@@ -221,21 +223,21 @@ def commanded(action: Any) -> tuple[Array, Array]:
     return (array, np.zeros_like(array)) if array.ndim == 1 else (array[0], array[1])
 
 
-def mallet_target(stage: Stage, player: int, wanted: Any, action: Any) -> list[Mark]:
+def mallet_target(scene_view: SceneView, player: int, wanted: Any, action: Any) -> list[Mark]:
     """Where an agent wants its mallet, and a line there from where it commands it now.
 
     Where it does not say, that is where the motion that it commands would lead within `AHEAD`.
 
     Args:
-        stage: Of the game.
+        scene_view: Of the game.
         player: 0 or 1.
         wanted: What it says: x and y on the table, seen from its own side, in [m]; None where it says nothing.
         action: What it sent last.
     """
     position, velocity = commanded(action)
-    tip = stage.tip_position(player, position)[:2]
+    tip = scene_view.tip_position(player, position)[:2]
     if wanted is None:
-        wanted = stage.tip_position(player, position + AHEAD * velocity)[:2]
+        wanted = scene_view.tip_position(player, position + AHEAD * velocity)[:2]
     else:
         wanted = np.asarray(wanted, dtype=np.float64)[:2] * (1.0 if player == 0 else -1.0)
     return [target(wanted.tolist(), player), *path(np.stack([tip, wanted]), TARGETS[player], fades=False)]

@@ -66,7 +66,7 @@ def new_context(width: int, height: int) -> Any:
 def why_not(backend: str) -> str | None:
     """Why a backend does not work on this machine; None where it does."""
     environment = {**os.environ, "MUJOCO_GL": backend, "PYOPENGL_PLATFORM": backend}
-    command = [sys.executable, "-c", _TRIAL]
+    command = [sys.executable, "-P", "-c", _TRIAL]
     try:
         done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=_PATIENCE)
     except subprocess.TimeoutExpired:

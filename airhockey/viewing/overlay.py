@@ -37,17 +37,17 @@ class Overlay:
         try:
             import PIL  # noqa: F401
         except ImportError as error:
-            raise MissingDependencyError("films need Pillow: pip install 'airhockey[video]'") from error
+            raise MissingDependencyError("videos need Pillow: pip install 'airhockey[video]'") from error
         self.width, self.height = width, height
         self.bar = max(16, round(BAR_SHARE * height))
         self._drawn: tuple[Caption, Any, Any] | None = None
 
     def write(self, picture: Picture, caption: Caption) -> None:
         """Write over a picture, in place. Shape (height, width, 3)."""
-        told = replace(caption, seconds=int(caption.seconds * 10 + 0.5) / 10)
-        if self._drawn is None or self._drawn[0] != told:
-            words = told.alarm or told.news
-            self._drawn = told, self._scoreboard(told), self._ticker(told) if words else None
+        shown = replace(caption, seconds=int(caption.seconds * 10 + 0.5) / 10)
+        if self._drawn is None or self._drawn[0] != shown:
+            words = shown.alarm or shown.news
+            self._drawn = shown, self._scoreboard(shown), self._ticker(shown) if words else None
         _, top, bottom = self._drawn
         _blend(picture[: self.bar], top)
         if bottom is not None:

@@ -38,13 +38,13 @@ _IMGUI_KEYS = {
 
 
 @dataclass(frozen=True)
-class View(messages.Snapshot):
-    """From the show to the panel.
+class PlaybackState(messages.Snapshot):
+    """From the playback to the panel.
 
     Attributes:
         caption: How things stand.
         marks: To be drawn.
-        step, steps, episode, episodes, can_go_back, paused, speed: See `Show` and `Transport`.
+        step, steps, episode, episodes, can_go_back, paused, speed: See `Playback` and `PlaybackControls`.
         robots: Number of arms in the scene.
     """
 
@@ -62,7 +62,7 @@ class View(messages.Snapshot):
 
 @dataclass(frozen=True)
 class Command(messages.Event):
-    """From the panel to the show: a command of `Transport`, "seek" with a step, or "connected"."""
+    """From the panel to the playback: a command of `PlaybackControls`, "seek" with a step, or "connected"."""
 
     command: str
     step: int = 0
@@ -72,13 +72,13 @@ class Panel(plugin.ViewerPlugin):
     """Draws the panel and says what was pressed."""
 
     def __init__(self) -> None:
-        self._view: View | None = None
+        self._view: PlaybackState | None = None
         self._connected = False
         self._ux = ux.UxState()
         self._fresh = True
 
     @messages.handler
-    def on_view(self, view: View) -> None:
+    def on_view(self, view: PlaybackState) -> None:
         """Keep the latest."""
         self._view = view
         self.viewer.extra_geoms[:] = geoms(view.marks)
@@ -122,7 +122,7 @@ class Panel(plugin.ViewerPlugin):
         )
         self._say(self._view.caption)
         imgui.Separator()
-        self._transport(self._view)
+        self._controls(self._view)
         self._cameras(self._view.robots)
         imgui.End()
 
@@ -153,8 +153,8 @@ class Panel(plugin.ViewerPlugin):
                 imgui.SameLine(_WIDTH / 2)
         _text(ALARM if caption.alarm else NEWS, caption.alarm or caption.news or " ")
 
-    def _transport(self, view: View) -> None:
-        """Buttons, and a slider where the show can go back."""
+    def _controls(self, view: PlaybackState) -> None:
+        """Buttons, and a slider where the playback can go back."""
         for label, command in (
             ("go on" if view.paused else "pause", "pause"), ("step", "step"), ("restart", "restart"),
             ("-", "slower"), ("+", "faster"),

@@ -1,4 +1,4 @@
-"""Pictures of a stage: the game from the stands, and small in a corner the same from above."""
+"""Pictures of a scene: the game from the stands, and small in a corner the same from above."""
 
 from collections.abc import Sequence
 from typing import Any, Self
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from airhockey.viewing.marks import Mark, add_to_scene
 from airhockey.viewing.offscreen import new_context
-from airhockey.viewing.scene_view import Stage
+from airhockey.viewing.scene_view import SceneView
 
 Picture = NDArray[np.uint8]
 QUALITIES = {"fast": (0, 0), "good": (1024, 0), "fine": (4096, 4)}
@@ -24,29 +24,31 @@ _MARGIN, _FRAME = 0.012, 0.0025  # shares of the picture's width
 
 
 class Camera:
-    """Draws a stage, from two sides at once, with one context.
+    """Draws a scene, from two sides at once, with one context.
 
     Args:
-        stage: What to draw.
+        scene_view: What to draw.
         width, height: Of the pictures, in pixels.
         inset: Whether to draw the view from above.
         quality: A key of `QUALITIES`.
     """
 
-    def __init__(self, stage: Stage, width: int, height: int, inset: bool = True, quality: str = "good") -> None:
-        self.stage, self.width, self.height = stage, width, height
-        model = stage.model
+    def __init__(
+        self, scene_view: SceneView, width: int, height: int, inset: bool = True, quality: str = "good"
+    ) -> None:
+        self.scene_view, self.width, self.height = scene_view, width, height
+        model = scene_view.model
         shadows, samples = QUALITIES[quality]
         model.vis.quality.shadowsize, model.vis.quality.offsamples = max(shadows, 1), samples
         self._shadows = shadows > 0
         model.vis.global_.offwidth, model.vis.global_.offheight = width, height
         self._option = mujoco.MjvOption()
         self._scene = mujoco.MjvScene(model, maxgeom=1000)
-        self._views = [(look_from_stands(stage.robots, width / height), mujoco.MjrRect(0, 0, width, height))]
+        self._views = [(look_from_stands(scene_view.robots, width / height), mujoco.MjrRect(0, 0, width, height))]
         if inset:
             w = round(INSET_SHARE * width)
             h, margin = round(w / INSET_ASPECT), round(_MARGIN * width)
-            left = (width - w) // 2 if stage.robots == 2 else width - w - margin  # where no arm is
+            left = (width - w) // 2 if scene_view.robots == 2 else width - w - margin  # where no arm is
             top = round(INSET_TOP * height)
             self._views.append((look_from_above(), mujoco.MjrRect(left, height - top - h, w, h)))
         self._context = new_context(width, height)
@@ -63,7 +65,7 @@ class Camera:
         self._context.free()
 
     def picture(self, marks: Sequence[Mark] = ()) -> Picture:
-        """What the stage shows now, and what is marked in it. Shape (height, width, 3); overwritten by the next picture."""
+        """What the scene shows now, and what is marked in it. Shape (height, width, 3); overwritten by the next picture."""
         for number, (camera, place) in enumerate(self._views):
             if number:
                 frame = max(2, round(_FRAME * self.width))
@@ -76,9 +78,9 @@ class Camera:
         return self._pixels[::-1]
 
     def _draw(self, camera: Any, place: Any, marks: Sequence[Mark], shadows: bool) -> None:
-        scene, stage = self._scene, self.stage
+        scene, scene_view = self._scene, self.scene_view
         everything = mujoco.mjtCatBit.mjCAT_ALL.value
-        mujoco.mjv_updateScene(stage.model, stage.data, self._option, None, camera, everything, scene)
+        mujoco.mjv_updateScene(scene_view.model, scene_view.data, self._option, None, camera, everything, scene)
         scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = shadows
         scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = 0
         add_to_scene(scene, marks)

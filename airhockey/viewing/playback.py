@@ -1,4 +1,4 @@
-"""A show: something that goes on step by step on a stage, episode after episode, live or from a recording."""
+"""Playback of episodes in a scene, step by step, live or from a recording."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -12,7 +12,7 @@ from airhockey.viewing.caption import Caption
 from airhockey.viewing.library import Entry
 from airhockey.viewing.marks import PREDICTED, Mark, path
 from airhockey.viewing.recording import Recording
-from airhockey.viewing.scene_view import Stage
+from airhockey.viewing.scene_view import SceneView
 from airhockey.viewing.video import trail
 
 Array = NDArray[np.float64]
@@ -21,17 +21,17 @@ PREDICTED_SECONDS = 0.8
 _STILL = 0.05  # [m/s]
 
 
-class Show(Protocol):
+class Playback(Protocol):
     """What a viewer needs of what it shows.
 
     Attributes:
-        stage: Where it is shown; another one may come with another episode.
+        scene_view: Where it is shown; another one may come with another episode.
         step, steps: Control steps shown so far and of the whole episode, as far as that is known.
         episode: Position of the present episode.
         can_go_back: Whether `seek` works.
     """
 
-    stage: Stage
+    scene_view: SceneView
     step: int
     steps: int
     episode: int
@@ -60,7 +60,7 @@ class Show(Protocol):
         """Let go of everything: it is over."""
 
 
-class RecordedShow:
+class RecordedPlayback:
     """Recordings, one after the other.
 
     Args:
@@ -72,43 +72,43 @@ class RecordedShow:
 
     def __init__(self, entries: Sequence[Entry], episode: int = 0) -> None:
         self._entries = list(entries)
-        self._stages: dict[str, Stage] = {}
+        self._scene_views: dict[str, SceneView] = {}
         self.begin(episode)
 
     @property
     def episodes(self) -> int | None:
-        """See `Show`."""
+        """See `Playback`."""
         return len(self._entries)
 
     def begin(self, episode: int) -> None:
-        """See `Show`."""
+        """See `Playback`."""
         self.episode = episode % len(self._entries)
         self._recording: Recording = self._entries[self.episode].load()
         env = self._recording.env
-        if env not in self._stages:
-            self._stages[env] = Stage(env)
-        self.stage, self.steps = self._stages[env], self._recording.steps
+        if env not in self._scene_views:
+            self._scene_views[env] = SceneView(env)
+        self.scene_view, self.steps = self._scene_views[env], self._recording.steps
         self.seek(0)
 
     def advance(self) -> bool:
-        """See `Show`."""
+        """See `Playback`."""
         if self.step >= self.steps:
             return False
         self.seek(self.step + 1)
         return True
 
     def seek(self, step: int) -> None:
-        """See `Show`."""
+        """See `Playback`."""
         self.step = min(max(step, 0), self.steps)
         row = self._recording.row(self.step)
-        self.stage.show(self._recording.puck[row], self._recording.joints[row])
+        self.scene_view.show(self._recording.puck[row], self._recording.joints[row])
 
     def caption(self) -> Caption:
-        """See `Show`."""
+        """See `Playback`."""
         return self._recording.narrator.caption(self.step)
 
     def marks(self) -> list[Mark]:
-        """See `Show`."""
+        """See `Playback`."""
         row = self._recording.row(self.step)
         puck, velocity = self._recording.puck[row], self._recording.puck_velocity[row]
         return trail(self._recording, row) + predicted_path(puck, velocity)

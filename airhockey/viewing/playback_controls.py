@@ -1,10 +1,10 @@
-"""Playing, pausing, stepping: what a viewer's buttons do to a show, and when its next step is due."""
+"""Playing, pausing, stepping: what a viewer's buttons do to a playback, and when its next step is due."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from airhockey.envs.specs import CONTROL_PERIOD
-from airhockey.viewing.playback import Show
+from airhockey.viewing.playback import Playback
 
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 """Times as fast as it is, in the order of the keys + and -."""
@@ -19,7 +19,7 @@ class Key:
 
     Attributes:
         key: As it is typed.
-        command: A command of `Transport`.
+        command: A command of `PlaybackControls`.
         label: For people.
     """
 
@@ -41,11 +41,11 @@ KEYS = (
 )
 
 
-class Transport:
-    """Drives a show.
+class PlaybackControls:
+    """Drives a playback.
 
     Args:
-        show: What is shown.
+        playback: What is shown.
         now: A clock, in [s].
 
     Attributes:
@@ -54,20 +54,20 @@ class Transport:
         running: False once the user has enough.
     """
 
-    def __init__(self, show: Show, now: Callable[[], float]) -> None:
-        self.show, self._now = show, now
+    def __init__(self, playback: Playback, now: Callable[[], float]) -> None:
+        self.playback, self._now = playback, now
         self.paused, self.speed, self.running = False, 1.0, True
         self._due = now()
         self._ended: float | None = None
         self._commands: dict[str, Callable[[], None]] = {
             "pause": self._toggle,
             "step": self._step,
-            "back": lambda: self.seek(self.show.step - 1),
+            "back": lambda: self.seek(self.playback.step - 1),
             "faster": lambda: self._change_speed(1),
             "slower": lambda: self._change_speed(-1),
-            "restart": lambda: self.begin(self.show.episode),
-            "next": lambda: self.begin(self.show.episode + 1),
-            "previous": lambda: self.begin(self.show.episode - 1),
+            "restart": lambda: self.begin(self.playback.episode),
+            "next": lambda: self.begin(self.playback.episode + 1),
+            "previous": lambda: self.begin(self.playback.episode - 1),
             "quit": self._quit,
         }
 
@@ -79,15 +79,15 @@ class Transport:
 
     def begin(self, episode: int) -> None:
         """Begin an episode; before the first one comes the last, where there is one."""
-        count = self.show.episodes
-        self.show.begin(max(episode, 0) if count is None else episode % count)
+        count = self.playback.episodes
+        self.playback.begin(max(episode, 0) if count is None else episode % count)
         self._ended, self._due = None, self._now()
 
     def seek(self, step: int) -> None:
-        """Go to a step and stay there, where the show can."""
-        if self.show.can_go_back:
+        """Go to a step and stay there, where the playback can."""
+        if self.playback.can_go_back:
             self.paused, self._ended = True, None
-            self.show.seek(step)
+            self.playback.seek(step)
 
     def run(self) -> None:
         """Take the steps that are due by now; some time after an episode's end the next one begins."""
@@ -97,12 +97,12 @@ class Transport:
             return
         if self._ended is not None:
             if now - self._ended > PAUSE_AT_END:
-                self.begin(self.show.episode + 1)
+                self.begin(self.playback.episode + 1)
             return
         self._due = max(self._due, now - _MOST_AT_ONCE)
         while self._due <= now:
             self._due += CONTROL_PERIOD / self.speed
-            if not self.show.advance():
+            if not self.playback.advance():
                 self._ended = now
                 return
 
@@ -116,7 +116,7 @@ class Transport:
 
     def _step(self) -> None:
         self.paused = True
-        self.show.advance()
+        self.playback.advance()
 
     def _change_speed(self, by: int) -> None:
         place = min(max(SPEEDS.index(self.speed) + by, 0), len(SPEEDS) - 1)

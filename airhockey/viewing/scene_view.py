@@ -1,4 +1,4 @@
-"""The stage: a scene in which puck and arms are put where they were, without physics."""
+"""A MuJoCo scene in which puck and arms are put where they were, without physics."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 STRIKER_JOINTS = 2
 
 
-class Stage:
+class SceneView:
     """The scene of an environment with its arms drawn.
 
     Args:
@@ -64,7 +64,7 @@ class Stage:
         mujoco.mj_forward(self.model, self.data)
 
     def tip_position(self, r: int, joint_position: Array) -> Array:
-        """Where the end-effector of arm r would be with these joints, in the world. The stage itself is left as it is.
+        """Where the end-effector of arm r would be with these joints, in the world. The scene itself is left as it is.
 
         Args:
             r: 0 or 1.

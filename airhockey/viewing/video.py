@@ -1,4 +1,4 @@
-"""Films of recordings: every frame is posed, drawn, captioned and written before the next one is thought of."""
+"""Videos of recordings: frame by frame, so that memory does not grow with their length."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from airhockey.errors import ConfigurationError
 from airhockey.viewing.highlights import frame_steps, highlight_spans
 from airhockey.viewing.library import Entry
 from airhockey.viewing.recording import Recording
-from airhockey.viewing.video_writer import MOST_GIF_FRAMES, Film, check_film, open_film
+from airhockey.viewing.video_writer import MOST_GIF_FRAMES, VideoWriter, check_video, open_video
 
 if TYPE_CHECKING:
     from airhockey.viewing.marks import Mark
@@ -24,8 +24,8 @@ TRAIL_STEPS = 30
 
 
 @dataclass(frozen=True)
-class FilmOptions:
-    """How a film is to be.
+class VideoOptions:
+    """How a video is to be.
 
     Attributes:
         width, height: In pixels.
@@ -49,7 +49,7 @@ class FilmOptions:
     at: float | None = None
 
 
-def frames_of(recording: Recording, options: FilmOptions) -> list[int]:
+def frames_of(recording: Recording, options: VideoOptions) -> list[int]:
     """The control step that each frame shows."""
     if options.at is not None:
         return [min(round(options.at / CONTROL_PERIOD), recording.steps)]
@@ -61,11 +61,11 @@ def frames_of(recording: Recording, options: FilmOptions) -> list[int]:
     return frame_steps(spans, options.fps, options.speed)
 
 
-def write_film(path: Path, entries: Sequence[Entry], options: FilmOptions, on_frame: OnFrame | None = None) -> int:
-    """Render recordings one after the other into one film.
+def write_video(path: Path, entries: Sequence[Entry], options: VideoOptions, on_frame: OnFrame | None = None) -> int:
+    """Render recordings one after the other into one video.
 
     Args:
-        path: The film.
+        path: The video.
         entries: What to show; each is loaded when its turn comes.
         options: How.
         on_frame: Called after every frame.
@@ -74,15 +74,15 @@ def write_film(path: Path, entries: Sequence[Entry], options: FilmOptions, on_fr
         Number of frames.
 
     Raises:
-        ConfigurationError: The film cannot be written, or there is nothing to show in it.
-        MissingDependencyError: Rendering or writing films needs something that is not installed.
+        ConfigurationError: The video cannot be written, or there is nothing to show in it.
+        MissingDependencyError: Rendering or writing videos needs something that is not installed.
     """
     from airhockey.viewing.offscreen import choose_backend
 
-    check_film(path, options.width, options.height, options.fps)
+    check_video(path, options.width, options.height, options.fps)
     choose_backend()
     done = 0
-    with open_film(path, options.width, options.height, options.fps) as film:
+    with open_video(path, options.width, options.height, options.fps) as writer:
         for number, entry in enumerate(entries):
             recording = entry.load()
             steps = frames_of(recording, options)
@@ -96,29 +96,29 @@ def write_film(path: Path, entries: Sequence[Entry], options: FilmOptions, on_fr
                     f"a GIF of more than {MOST_GIF_FRAMES} frames: choose --episodes, --seconds or a lower --fps, or make an .mp4"
                 )
             if steps:
-                _render(film, recording, steps, options, count())
+                _render(writer, recording, steps, options, count())
             done += len(steps)
         if done == 0:
             what = "highlights (goals, saves, faults, violations)" if options.highlights else "steps"
-            raise ConfigurationError(f"there are no {what} in what was chosen: nothing was filmed")
+            raise ConfigurationError(f"there are no {what} in what was chosen: nothing was shown")
     return done
 
 
 def _render(
-    film: Film, recording: Recording, steps: Sequence[int], options: FilmOptions, count: Callable[[int], None]
+    writer: VideoWriter, recording: Recording, steps: Sequence[int], options: VideoOptions, count: Callable[[int], None]
 ) -> None:
     from airhockey.viewing.overlay import Overlay
     from airhockey.viewing.pictures import Camera
-    from airhockey.viewing.scene_view import Stage
+    from airhockey.viewing.scene_view import SceneView
 
-    stage, overlay = Stage(recording.env), Overlay(options.width, options.height)
-    with Camera(stage, options.width, options.height, options.inset, options.quality) as camera:
+    scene_view, overlay = SceneView(recording.env), Overlay(options.width, options.height)
+    with Camera(scene_view, options.width, options.height, options.inset, options.quality) as camera:
         for k, step in enumerate(steps, start=1):
             row = recording.row(step)
-            stage.show(recording.puck[row], recording.joints[row])
+            scene_view.show(recording.puck[row], recording.joints[row])
             picture = np.array(camera.picture(trail(recording, row)))
             overlay.write(picture, recording.narrator.caption(step))
-            film.add(picture)
+            writer.add(picture)
             count(k)
 
 

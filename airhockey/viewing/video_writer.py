@@ -1,4 +1,4 @@
-"""Writing films frame by frame: H.264 with PyAV, GIF and stills with Pillow. A film has its name once it is complete."""
+"""Writing videos frame by frame: H.264 with PyAV, GIF and stills with Pillow. A video has its name once it is complete."""
 
 import contextlib
 import os
@@ -23,22 +23,22 @@ _SWATCH = 0.02
 """Share of the picture's height that each small but telling colour gets when the palette is chosen."""
 
 
-class Film(Protocol):
+class VideoWriter(Protocol):
     """Something that takes pictures."""
 
     def add(self, picture: Picture) -> None:
         """Add a frame. Shape (height, width, 3)."""
 
 
-def check_film(path: Path, width: int, height: int, fps: float) -> None:
+def check_video(path: Path, width: int, height: int, fps: float) -> None:
     """Raise what would go wrong, before anything is rendered.
 
     Raises:
         ConfigurationError: The ending is none of `FORMATS`, its folder does not exist, or the size is not even.
-        MissingDependencyError: What writes such films is not installed.
+        MissingDependencyError: What writes such videos is not installed.
     """
     if path.suffix.lower() not in FORMATS:
-        raise ConfigurationError(f"a film cannot be a {path.suffix or 'file without ending'!r}: {', '.join(FORMATS)}")
+        raise ConfigurationError(f"a video cannot be a {path.suffix or 'file without ending'!r}: {', '.join(FORMATS)}")
     if not path.parent.is_dir():
         raise ConfigurationError(f"there is no folder {str(path.parent)!r} to put {path.name!r} in")
     if path.is_dir():
@@ -55,13 +55,13 @@ def check_film(path: Path, width: int, height: int, fps: float) -> None:
             import av  # noqa: F401
     except ImportError as error:
         raise MissingDependencyError(
-            f"films need {'Pillow' if gif or still else 'PyAV and Pillow'}: {INSTALL}"
+            f"videos need {'Pillow' if gif or still else 'PyAV and Pillow'}: {INSTALL}"
         ) from error
 
 
 @contextlib.contextmanager
-def open_film(path: Path, width: int, height: int, fps: float) -> Iterator[Film]:
-    """Begin a film; it is there, whole, when the block ends, and not at all when the block fails.
+def open_video(path: Path, width: int, height: int, fps: float) -> Iterator[VideoWriter]:
+    """Begin a video; it is there, whole, when the block ends, and not at all when the block fails.
 
     Args:
         path: Its ending says what it becomes.
@@ -73,8 +73,8 @@ def open_film(path: Path, width: int, height: int, fps: float) -> Iterator[Film]
     """
     part = path.with_name(f".{path.name}.{os.getpid()}.part{path.suffix.lower()}")
     try:
-        with _new_film(part, width, height, fps) as film:
-            yield film
+        with _new_writer(part, width, height, fps) as writer:
+            yield writer
         part.replace(path)
     except OSError as error:
         raise AirHockeyError(f"cannot write {str(path)!r}: {' '.join(str(error).split())}") from error
@@ -82,7 +82,7 @@ def open_film(path: Path, width: int, height: int, fps: float) -> Iterator[Film]
         part.unlink(missing_ok=True)
 
 
-def _new_film(path: Path, width: int, height: int, fps: float) -> "_Video | _Gif | _Still":
+def _new_writer(path: Path, width: int, height: int, fps: float) -> "_Video | _Gif | _Still":
     if path.suffix == ".png":
         return _Still(path)
     return _Gif(path, fps) if path.suffix == ".gif" else _Video(path, width, height, fps)
@@ -149,7 +149,7 @@ class _Gif:
     def __exit__(self, kind: object, *_: object) -> None:
         if kind is None and self._frames:
             first, *others = self._frames
-            # A GIF counts in hundredths of a second: round the times, not the durations, or long films drift.
+            # A GIF counts in hundredths of a second: round the times, not the durations, or long videos drift.
             ends = [round(self._duration * (k + 1) / 10.0) * 10 for k in range(len(self._frames))]
             durations = [end - begin for begin, end in zip([0, *ends], ends, strict=False)]
             first.save(

@@ -1,7 +1,7 @@
 """MuJoCo's web viewer, on the address that was asked for and no other.
 
-The viewer listens on every interface and asks nobody for a password; it has no option for that. Imports MuJoCo's viewer: only
-where something is watched.
+The viewer listens on every interface and asks nobody for a password; it has no option for that: see
+`web_guard`. Imports MuJoCo's viewer: only where something is watched.
 """
 
 import contextlib
@@ -14,8 +14,9 @@ from typing import Any
 from mujoco.studio import launch_thread, viewer_protocol, web_viewer
 
 from airhockey.errors import ConfigurationError
-from airhockey.viewing.key_commands import Ears
+from airhockey.viewing.key_commands import KeyCommands
 from airhockey.viewing.panel import Panel
+from airhockey.viewing.web_guard import Guard
 
 _STARTING = 30.0  # [s] that a viewer may take to begin
 
@@ -29,7 +30,7 @@ class BoundViewer(web_viewer.WebViewer):
     """
 
     def __init__(self, host: str, *arguments: Any, **named: Any) -> None:
-        self._chosen_host = host
+        self._chosen_host, self.guard = host, Guard(host)
         super().__init__(*arguments, **named)
 
     @property
@@ -40,13 +41,18 @@ class BoundViewer(web_viewer.WebViewer):
     def _host(self, _: str) -> None:
         """MuJoCo's choice is not taken."""
 
+    def _start_server(self) -> None:
+        """Start it under guard."""
+        self.guard.watch(self.port)
+        super()._start_server()
+
     @property
     def port(self) -> int:
         """That it listens on."""
         return int(self._http_port)
 
 
-def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any, str, Ears]:
+def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any, str, KeyCommands]:
     """Start the viewer in a thread of its own.
 
     Args:
@@ -55,7 +61,7 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
         host, port: To listen on; port 0 for the first free one from 8080.
 
     Returns:
-        MuJoCo's handle, the page's address, and what hears the panel.
+        MuJoCo's handle, the page's address, and what collects commands.
 
     Raises:
         ConfigurationError: The address cannot be listened on.
@@ -63,7 +69,7 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
     check_address(host)
     logging.getLogger("WebServer").setLevel(logging.WARNING)
     web_viewer._print_url_banner = lambda *_: None  # it names addresses that are not listened on
-    ports: queue.Queue[int | BaseException] = queue.Queue()
+    ports: queue.Queue[tuple[int, str] | BaseException] = queue.Queue()
 
     def target(endpoint: Any) -> None:
         config = viewer_protocol.ViewerConfig(title=title, gfx="web", http_port=port)
@@ -72,19 +78,20 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
         except BaseException as error:
             ports.put(error)
             raise
-        ports.put(viewer.port)
+        ports.put((viewer.port, viewer.guard.token))
         viewer_protocol.run_viewer_loop(viewer)
 
-    ears = Ears()
-    handle = launch_thread.launch_thread(target, sim_plugins=[ears])
+    commands = KeyCommands()
+    handle = launch_thread.launch_thread(target, sim_plugins=[commands])
     handle.model, handle.data = model, data
     bound = _answer(ports)
     if isinstance(bound, BaseException):
         with contextlib.suppress(BaseException):
             handle.close()
         raise ConfigurationError(f"cannot listen on {host}:{port}: {' '.join(str(bound).split())}") from bound
-    _wait_until_it_listens(host, bound)
-    return handle, f"http://{f'[{host}]' if ':' in host else host}:{bound}/", ears
+    bound_port, token = bound
+    _wait_until_it_listens(host, bound_port)
+    return handle, f"http://{f'[{host}]' if ':' in host else host}:{bound_port}/?token={token}", commands
 
 
 def check_address(host: str) -> None:
@@ -106,7 +113,7 @@ def _wait_until_it_listens(host: str, port: int) -> None:
         time.sleep(0.02)
 
 
-def _answer(ports: "queue.Queue[int | BaseException]") -> int | BaseException:
+def _answer(ports: "queue.Queue[tuple[int, str] | BaseException]") -> tuple[int, str] | BaseException:
     try:
         return ports.get(timeout=_STARTING)
     except queue.Empty:

@@ -48,6 +48,10 @@ class PlainPlayer(AgentBase):
     """Sees the puck, and lets `play` move the mallet; a style is a subclass."""
 
     interpolation_order = 3
+    x: float
+    y: float
+    vx: float
+    vy: float
 
     def __init__(self, env_info: Mapping[str, Any], agent_id: int = 1, **kwargs: Any) -> None:
         super().__init__(env_info, agent_id, **kwargs)

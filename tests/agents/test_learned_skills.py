@@ -22,9 +22,11 @@ from airhockey.agents.atacom.features import (
 )
 from airhockey.agents.atacom.learned import FOLDER, LearnedSkill, trained
 from airhockey.agents.atacom.network import Network
-from airhockey.agents.atacom.skill import DEFEND, HOME_SKILL, REPEAT, Situation
+from airhockey.agents.atacom.skill import DEFEND, HOME_SKILL, REPEAT
+from airhockey.agents.estimation.kalman import PuckEstimate
 from airhockey.agents.estimation.motion import advance, puck_motion
-from airhockey.agents.table import to_table
+from airhockey.agents.skill import Situation
+from airhockey.agents.table import HOME, to_table
 from airhockey.envs.specs import IIWA
 from airhockey.errors import ConfigurationError
 
@@ -110,6 +112,10 @@ def test_a_crossing_is_where_the_puck_will_be():
     assert crossing(np.array([0.3, 0.0, 1.0, 0.0, 0.0]), LINE, HORIZON, constants)[0] >= HORIZON
 
 
+def seen(puck, tip=HOME, tip_velocity=np.zeros(2)):  # noqa: B008 - nobody writes to it
+    return Situation(PuckEstimate(puck, np.eye(5), 0), tip, tip_velocity)
+
+
 def test_a_skill_acts_every_so_many_steps_and_rests_when_it_is_done():
     controller, calls = AtacomController(IIWA), []
 
@@ -121,16 +127,16 @@ def test_a_skill_acts_every_so_many_steps_and_rests_when_it_is_done():
     network = Watched({"weight_0": np.zeros((2, 16)), "bias_0": np.zeros(2)})
     learned = LearnedSkill(DEFEND, network, controller)
     calls.clear()
-    coming = np.array([0.2, 0.0, -1.0, 0.0, 0.0])
+    coming, gone = np.array([0.2, 0.0, -1.0, 0.0, 0.0]), np.array([-0.5, 0.0, 0.2, 0.0, 0.0])
     tips = []
     for _ in range(6):
-        learned.step(Situation(coming, np.array([-0.86, 0.0]), np.zeros(2)))
+        learned.act(seen(coming))
         tips.append(controller.tip_velocity[1])
     assert len(calls) == 6 / REPEAT
     assert tips[-1] > 0.3
     for _ in range(40):
-        learned.step(Situation(np.array([-0.5, 0.0, 0.2, 0.0, 0.0]), np.array([-0.86, 0.0]), np.zeros(2)))
-    assert learned.resting and len(calls) == 6 / REPEAT
+        learned.act(seen(gone))
+    assert learned.finished and len(calls) == 6 / REPEAT
     assert abs(controller.tip_velocity).max() < 1e-2
 
 
@@ -191,10 +197,10 @@ def test_the_way_home_is_learned_and_arrives():
         for action in random.uniform(-1.0, 1.0, (4, 2)):
             for _ in range(15):
                 controller.step(action)
-        learned.start()
+        learned.begin(seen(puck))
         for _ in range(150):
-            learned.step(Situation(puck, to_table(controller.tip), controller.tip_velocity))
-        arrived += learned.resting
+            learned.act(seen(puck, to_table(controller.tip), controller.tip_velocity))
+        arrived += learned.finished
     assert arrived >= 9
 
 

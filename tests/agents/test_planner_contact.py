@@ -5,7 +5,7 @@ import pytest
 
 from airhockey import envs
 from airhockey.agents.estimation.motion import advance, puck_motion
-from airhockey.agents.planner.contacts.puck_physics import clearance, put_on_table, step
+from airhockey.agents.planner.contacts.puck_physics import Mallet, clearance, put_on_table, step
 from airhockey.agents.planner.contacts.redirection import RESTITUTION, redirecting, resting_place
 from airhockey.agents.planner.pushes.push import coast
 from airhockey.agents.table import CONTACT, HOME
@@ -38,7 +38,7 @@ def simulated(puck, steps):
 def test_contacts_are_those_of_the_simulator(puck, steps):
     state = np.array(puck)
     for _ in range(20 * steps):
-        step(state, *HOME, 0.0, 0.0, 1.0, 1.0)
+        step(state, Mallet(*HOME, 0.0, 0.0), 1.0, 1.0)
     truth = simulated(puck, steps)
     np.testing.assert_allclose(state[:2], truth[:2], atol=0.012)
     np.testing.assert_allclose(state[2:4], truth[2:4], atol=0.03)
@@ -65,7 +65,7 @@ def test_a_redirected_puck_leaves_as_wanted(grip):
         puck = state.copy()
         for _ in range(40):
             mallet = mallet + 0.001 * velocity
-            step(puck, *mallet, *velocity, 1.0 if grip else 0.0, 1.0)
+            step(puck, Mallet(*mallet, *velocity), 1.0 if grip else 0.0, 1.0)
         np.testing.assert_allclose(puck[2], wanted[0], atol=0.03)
         np.testing.assert_allclose(puck[3], wanted[1], atol=0.1 if grip else 0.03)  # its spin turns during the contact
 

@@ -6,7 +6,7 @@ from skill_player import SkillPlayer
 
 from airhockey.agents.control.cartesian import cubic
 from airhockey.agents.estimation.motion import puck_motion
-from airhockey.agents.planner.contacts.interception import STEP, Reach, best_meeting, effort, meeting, puck_path
+from airhockey.agents.planner.contacts.interception import STEP, Reach, Way, best_meeting, effort, meeting, puck_path
 from airhockey.agents.planner.skills.defend import Defend
 from airhockey.agents.planner.skills.repel import Repel
 from airhockey.agents.table import CONTACT, HOME
@@ -44,7 +44,7 @@ def test_effort_is_the_largest_need_along_the_cubic():
         need = np.maximum(
             np.abs(accelerations).max(axis=0) / REACH.acceleration, np.abs(speeds).max(axis=0) / REACH.speed
         )
-        assert effort(start, np.zeros(2), end, end_velocity, duration, REACH) == pytest.approx(
+        assert effort(Way(start, np.zeros(2), end, end_velocity, duration), REACH) == pytest.approx(
             np.hypot(*need), rel=0.02
         )
 
@@ -58,8 +58,9 @@ def test_a_path_ends_at_the_goal(wish):
 
 def test_a_meeting_is_on_the_path_on_the_table_and_in_the_pucks_way(wish):
     for y in (-0.3, 0.0, 0.2):
-        path, bounces, since = puck_path(np.array([0.4, y, -2.0, 0.1, 0.0]), 150, wish.mouth, CONSTANTS)
-        index, _, need = best_meeting(path, bounces, since, HOME, np.zeros(2), REACH, wish, -10)
+        watched = puck_path(np.array([0.4, y, -2.0, 0.1, 0.0]), 150, wish.mouth, CONSTANTS)
+        path = watched.states
+        index, _, need = best_meeting(watched, HOME, np.zeros(2), REACH, wish, -10)
         place, velocity = meeting(path[index], wish)
         assert index * STEP > 0.2 and need < 2.0
         assert np.hypot(*(place - path[index, :2])) == pytest.approx(CONTACT)
@@ -70,8 +71,8 @@ def test_a_meeting_is_on_the_path_on_the_table_and_in_the_pucks_way(wish):
 
 def test_nothing_is_met_where_the_mallet_may_not_be(wish):
     nowhere = REACH._replace(lower=np.array([-0.2, 0.0]), upper=np.array([-0.19, 0.01]))
-    path, bounces, since = puck_path(np.array([0.4, 0.3, -2.0, 0.0, 0.0]), 100, wish.mouth, CONSTANTS)
-    assert best_meeting(path, bounces, since, HOME, np.zeros(2), nowhere, wish, -10)[0] == -1
+    path = puck_path(np.array([0.4, 0.3, -2.0, 0.0, 0.0]), 100, wish.mouth, CONSTANTS)
+    assert best_meeting(path, HOME, np.zeros(2), nowhere, wish, -10)[0] == -1
 
 
 @pytest.mark.parametrize("robot", ["iiwa", "planar"])

@@ -15,7 +15,7 @@ from airhockey.agents.planner.shots.flight import FLIGHT_STEP, coast, fly
 from airhockey.agents.planner.shots.kinds import OPEN
 from airhockey.agents.planner.shots.parameters import smash_parameters
 from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
-from airhockey.agents.planner.shots.shots import Shot, judge, room_speed, turned
+from airhockey.agents.planner.shots.shots import Attempt, Keeper, Shot, judge, room_speed, turned
 from airhockey.agents.table import CONTACT, HALF_LENGTH, to_robot
 from airhockey.envs.specs import IIWA
 
@@ -33,7 +33,7 @@ def model() -> ShotModel:
 def shot_at(
     model: ShotModel, puck: list[float], aim: float = 0.0, wall: float = 0.0, opponent: np.ndarray = NOBODY
 ) -> Shot:
-    return judge(np.array(puck), 3.0, aim, wall, TIP, opponent, 0.0, 0.0, OPEN.pace, OPEN.heeds, model)
+    return judge(np.array(puck), Attempt(3.0, aim, wall, 0.0), TIP, Keeper(opponent, 0.0, OPEN.heeds), OPEN.pace, model)
 
 
 def test_a_puck_at_rest_leaves_along_the_normal() -> None:
@@ -117,7 +117,7 @@ def test_there_is_no_straight_shot_from_a_bad_place(model: ShotModel, puck: list
 
 def test_there_is_no_shot_without_the_time_for_the_way(model: ShotModel) -> None:
     puck = np.array([-0.4, -0.35, 0.0, 0.0, 0.0])
-    assert judge(puck, 0.3, 0.0, 0.0, TIP, NOBODY, 0.0, 0.0, OPEN.pace, OPEN.heeds, model).value == 0.0
+    assert judge(puck, Attempt(0.3, 0.0, 0.0, 0.0), TIP, Keeper(NOBODY, 0.0, OPEN.heeds), OPEN.pace, model).value == 0.0
 
 
 def test_the_speed_that_the_room_allows_uses_up_the_room(model: ShotModel) -> None:

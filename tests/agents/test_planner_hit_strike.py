@@ -11,12 +11,11 @@ from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.kalman import PuckEstimate
-from airhockey.agents.estimation.prediction import PuckPredictor
 from airhockey.agents.parameters import convert
-from airhockey.agents.planner.motion.approach import approach
+from airhockey.agents.planner.motion.approach import Pace, approach
 from airhockey.agents.planner.motion.strike import Strike, run_up
 from airhockey.agents.planner.shots.parameters import SmashParameters, smash_parameters
-from airhockey.agents.planner.tactics import choose
+from airhockey.agents.planner.tactics import Playing, choose
 from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, to_robot, to_table
 from airhockey.envs.specs import IIWA, PLANAR, SOFT_LIMIT, RobotSpec
@@ -89,7 +88,7 @@ def test_the_approach_gets_there_round_the_puck_without_touching_it() -> None:
     tip, velocity, place, puck = np.array([-0.4, 0.02]), np.zeros(2), np.array([-0.75, 0.0]), np.array([-0.58, 0.0])
     for _ in range(200):
         before = velocity
-        tip, velocity = approach(tip, velocity, place, 0.8, 3.0, DT, puck, 0.02)
+        tip, velocity = approach(tip, velocity, place, Pace(0.8, 3.0, 0.02), DT, puck)
         assert np.hypot(*(velocity - before)) <= 3.0 * DT + 1e-9
         assert np.hypot(*(tip - puck)) > CONTACT
     assert tip == pytest.approx(place, abs=0.002)
@@ -102,7 +101,9 @@ def situation(x: float, velocity: tuple[float, float], tip: tuple[float, float] 
     assert q is not None
     controller.reset(q)
     puck = PuckEstimate(np.array([x, 0.0, *velocity, 0.0]), np.eye(5), 0)
-    return Situation(puck, PuckPredictor(), controller, None, 0, DT)
+    return Situation(
+        puck, np.array(tip), controller.tip_velocity(), None, DT, 0, controller.move, controller.state.position
+    )
 
 
 @pytest.mark.parametrize(
@@ -129,22 +130,22 @@ def situation(x: float, velocity: tuple[float, float], tip: tuple[float, float] 
 def test_the_choice_of_a_skill(
     task: str, now: str, finished: bool, committed: bool, stroke: str | None, x: float, speed: float, expected: str
 ) -> None:
-    assert choose(task, now, finished, committed, stroke, "repel", situation(x, (speed, 0.0))) == expected
+    assert choose(task, Playing(now, finished, committed), stroke, "repel", situation(x, (speed, 0.0))) == expected
 
 
 def test_a_puck_that_is_being_touched_is_not_shot_at() -> None:
     touching = situation(-0.5, (0.0, 0.0), tip=(-0.5 - CONTACT - 0.005, 0.0))
-    assert choose("hit", "prepare", False, False, "smash", "repel", touching) == "prepare"
+    assert choose("hit", Playing("prepare", False, False), "smash", "repel", touching) == "prepare"
 
 
 def test_a_puck_that_was_prepared_is_shot_at_even_where_the_mallet_touches_it() -> None:
     touching = situation(-0.5, (0.0, 0.0), tip=(-0.5 - CONTACT - 0.005, 0.0))
-    assert choose("hit", "prepare", True, False, "smash", "repel", touching) == "smash"
+    assert choose("hit", Playing("prepare", True, False), "smash", "repel", touching) == "smash"
 
 
 def test_a_fast_puck_gets_the_answer_that_was_chosen() -> None:
     fast = situation(0.5, (-2.5, 0.0))
-    assert choose("tournament", "ready", True, False, None, "defend", fast) == "defend"
+    assert choose("tournament", Playing("ready", True, False), None, "defend", fast) == "defend"
 
 
 def test_parameters_are_checked() -> None:

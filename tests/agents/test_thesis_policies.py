@@ -4,14 +4,13 @@ import numpy as np
 import pytest
 
 from airhockey.agents.estimation.kalman import PuckEstimate
-from airhockey.agents.estimation.prediction import PuckPredictor
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, HOME
 from airhockey.agents.thesis.defend import DefendPolicy
 from airhockey.agents.thesis.hit import HitPolicy
 from airhockey.agents.thesis.home import HomePolicy
 from airhockey.agents.thesis.opponent import OpponentWatch
 from airhockey.agents.thesis.parameters import thesis_parameters
-from airhockey.agents.thesis.policy import View
 from airhockey.agents.thesis.prepare import PreparePolicy
 
 DT = 0.02
@@ -20,7 +19,7 @@ BOTH = pytest.mark.parametrize("parameters", [thesis_parameters("tuned"), thesis
 
 def view(puck, tip, tip_velocity=(0.0, 0.0)):
     estimate = PuckEstimate(np.array([*puck, *np.zeros(5 - len(puck))]), 1e-6 * np.eye(5), 0)
-    return View(estimate, np.array(tip, dtype=float), np.array(tip_velocity, dtype=float), None, DT)
+    return Situation(estimate, np.array(tip, dtype=float), np.array(tip_velocity, dtype=float), None, DT)
 
 
 def follow(policy, puck, tip, steps, until=None):
@@ -86,7 +85,7 @@ def test_hit_waits_for_a_moving_puck(parameters):
 
 def test_defend_meets_the_puck_on_the_line_moving_with_it():
     parameters = thesis_parameters("tuned").defend
-    policy = DefendPolicy(parameters, PuckPredictor())
+    policy = DefendPolicy(parameters)
     state, tip, velocity = np.array([0.5, 0.1, -1.5, -0.2, 0.0]), np.array(HOME), np.zeros(2)
     for _ in range(100):
         move = policy.step(view(state, tip, velocity))
@@ -106,7 +105,7 @@ def test_defend_meets_the_puck_on_the_line_moving_with_it():
 @BOTH
 @pytest.mark.parametrize("state", [(0.3, 0.0, -0.1, 0.0), (-0.3, 0.0, 1.0, 0.0), (-0.9, 0.1, -1.0, 0.0)])
 def test_there_is_nothing_to_defend_against_a_slow_a_leaving_or_a_passed_puck(parameters, state):
-    assert DefendPolicy(parameters.defend, PuckPredictor()).step(view(state, HOME)).finished
+    assert DefendPolicy(parameters.defend).step(view(state, HOME)).finished
 
 
 @BOTH

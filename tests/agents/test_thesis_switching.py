@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from airhockey.agents.estimation.kalman import PuckEstimate
-from airhockey.agents.thesis.policy import View
+from airhockey.agents.skill import Situation
 from airhockey.agents.thesis.state_machine import StateMachine, Task, following
 from airhockey.agents.thesis.switcher import Switcher, SwitcherParameters
 
@@ -25,7 +25,7 @@ EVERYTHING = frozenset(Task)
 
 def view(x, y, vx=0.0, vy=0.0):
     state = np.array([x, y, vx, vy, 0.0])
-    return View(PuckEstimate(state, np.eye(5), 0), np.array([-0.86, 0.0]), np.zeros(2), None, 0.02)
+    return Situation(PuckEstimate(state, np.eye(5), 0), np.array([-0.86, 0.0]), np.zeros(2), None, 0.02)
 
 
 ALLOWED = {

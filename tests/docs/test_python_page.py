@@ -12,12 +12,21 @@ from airhockey import envs
 
 PAGE = Path(__file__).parents[2] / "docs" / "howto" / "python.md"
 PROGRAMS = re.findall(r"^```python\n(.*?)^```$", PAGE.read_text("utf-8"), re.MULTILINE | re.DOTALL)
-ENVIRONMENT, AGENT, MUSHROOM, GYMNASIUM = PROGRAMS
+ENVIRONMENT, PLANNING, AGENT, MUSHROOM, GYMNASIUM = PROGRAMS
 
 
 def test_the_program_with_an_environment(capsys: pytest.CaptureFixture[str]) -> None:
     exec(ENVIRONMENT, {})
     assert capsys.readouterr().out in ("goal!\n", "no goal\n")
+
+
+def test_the_program_that_plans() -> None:
+    names: dict[str, Any] = {}
+    exec(PLANNING, names)
+    env, twin, action = names["env"], names["twin"], names["action"]
+    assert len(set(names["violations"])) == 5
+    assert env.step_count == twin.step_count == 0
+    assert env.step(action)[0].tobytes() == twin.step(action)[0].tobytes()
 
 
 def test_the_agent_stays_where_it_is() -> None:

@@ -14,16 +14,24 @@ from pettingzoo.test import parallel_api_test, parallel_seed_test
 import airhockey.envs.gymnasium
 from airhockey import envs
 from airhockey.agents.hold import standing_still
-from airhockey.envs.pettingzoo import ID
+from airhockey.envs.pettingzoo import IDS
 from airhockey.envs.tasks import reward_for
 from airhockey.errors import ConfigurationError
 
-TASKS = airhockey.envs.gymnasium.TASKS
+TASKS = airhockey.envs.gymnasium.TASKS["2023"]
+EVERY_ID = sorted(
+    f"{airhockey.envs.gymnasium.NAMESPACES[edition]}/{name}-v0"
+    for edition, names in airhockey.envs.gymnasium.TASKS.items()
+    for name in names
+)
 
 
 def test_the_ids_are_those_of_the_tasks():
     assert set(TASKS) == set(envs.ENVIRONMENTS) - {"tournament"}
-    assert {f"airhockey/{name}-v0" for name in TASKS} <= set(gymnasium.registry)
+    assert {f"airhockey/{name}-v0" for name in TASKS} <= set(EVERY_ID) <= set(gymnasium.registry)
+    assert {id_ for id_ in EVERY_ID if id_.startswith("airhockey2025/")} == {
+        f"airhockey2025/{name}-v0" for name in set(envs.edition("2025").environments) - {"tournament"}
+    }
 
 
 def test_an_id_may_name_the_module_that_registers_it():
@@ -31,9 +39,9 @@ def test_an_id_may_name_the_module_that_registers_it():
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
-@pytest.mark.parametrize("name", TASKS)
+@pytest.mark.parametrize("name", EVERY_ID)
 def test_gymnasiums_checker_is_content(name):
-    env = gymnasium.make(f"airhockey/{name}-v0").unwrapped
+    env = gymnasium.make(name).unwrapped
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         check_env(env, skip_render_check=True)
@@ -97,13 +105,14 @@ def test_the_package_is_imported_without_gymnasium():
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
-def test_pettingzoos_checkers_are_content():
-    parallel_api_test(pettingzoo.make("parallel", ID, max_cycles=150), num_cycles=300)
-    parallel_seed_test(lambda: pettingzoo.make("parallel", ID, max_cycles=30, disturbances="server"))
+@pytest.mark.parametrize("name", IDS.values())
+def test_pettingzoos_checkers_are_content(name):
+    parallel_api_test(pettingzoo.make("parallel", name, max_cycles=150), num_cycles=300)
+    parallel_seed_test(lambda: pettingzoo.make("parallel", name, max_cycles=30, disturbances="server"))
 
 
 def test_a_game_goes_on_with_the_next_serve_and_ends_by_truncation():
-    game = pettingzoo.make("parallel", ID, max_cycles=760)  # a puck that nobody plays is a fault on step 752
+    game = pettingzoo.make("parallel", IDS["2023"], max_cycles=760)  # a puck that nobody plays is a fault on step 752
     observations, infos = game.reset(seed=1)
     assert all(info["serve"] for info in infos.values())
     action = {player: standing_still(seen[6:13], 3) for player, seen in observations.items()}

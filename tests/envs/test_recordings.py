@@ -11,6 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from airhockey import envs
+from airhockey.envs.editions import available
 
 FOLDER = Path(__file__).parent.parent / "data" / "recordings"
 PATHS = sorted(FOLDER.glob("*.npz"))
@@ -20,6 +21,8 @@ THROUGH_THE_WRAPPER = (
     "7dof-hit_strike_o3_s1",
     "7dof-prepare_sweep_o-1_s1",
     "tournament_serves_o3_s1",
+    "2025-hit_strike_o3_s1",
+    "2025-tournament_strike_o3_s1",
 )
 Array = NDArray[np.float64]
 
@@ -62,34 +65,42 @@ def compare_info(info: dict[str, Any], recorded: dict[str, Array], step: int) ->
         np.testing.assert_allclose(value[clear], expected[clear], rtol=1e-5, atol=1e-5)
 
 
-def load(path: Path) -> tuple[str, int | None, dict[str, Array]]:
+def load(path: Path) -> tuple[dict[str, Any], dict[str, Array]]:
+    """What the environment is made with, and the recording."""
     with np.load(path, allow_pickle=False) as file:
         recorded = dict(file)
     order = int(recorded["order"])
-    return str(recorded["env"]), None if order == -99 else order, recorded
+    arguments = {
+        "interpolation_order": None if order == -99 else order,
+        "edition": str(recorded.get("edition", "2023")),
+    }
+    return {"name": str(recorded["env"])} | arguments, recorded
 
 
 def test_the_recordings_cover_every_environment_and_order_and_are_small() -> None:
-    loaded = [load(path)[:2] for path in PATHS]
-    assert {name for name, _ in loaded} == set(envs.ENVIRONMENTS)
+    loaded = [load(path)[0] for path in PATHS]
+    for edition in available():
+        names = {made["name"] for made in loaded if made["edition"] == edition}
+        assert names == set(envs.edition(edition).environments)
     for arm in ("3dof", "7dof"):
-        assert {order for name, order in loaded if name.startswith(arm)} == {1, 2, 3, 4, 5, -1, None}
+        orders = {made["interpolation_order"] for made in loaded if made["name"].startswith(arm)}
+        assert orders == {1, 2, 3, 4, 5, -1, None}
     assert sum(path.stat().st_size for path in PATHS) < 600_000
 
 
 @pytest.mark.parametrize("path", PATHS, ids=lambda path: path.stem)
 def test_the_environment_reproduces_a_recording(path: Path) -> None:
-    name, order, recorded = load(path)
-    replay(envs.make(name, interpolation_order=order), recorded)
+    arguments, recorded = load(path)
+    replay(envs.make(**arguments), recorded)
 
 
 @pytest.mark.parametrize("stem", THROUGH_THE_WRAPPER)
 def test_the_official_wrapper_reproduces_a_recording(stem: str) -> None:
-    name, order, recorded = load(FOLDER / f"{stem}.npz")
-    replay(envs.AirHockeyChallengeWrapper(name, interpolation_order=order), recorded)
+    arguments, recorded = load(FOLDER / f"{stem}.npz")
+    replay(envs.AirHockeyChallengeWrapper(arguments.pop("name"), **arguments), recorded)
 
 
 def test_without_contact_a_last_bit_stays_small() -> None:
     """So that the bound above means something: only contacts of the planar arm are chaotic."""
-    chaotic = {path.stem for path in PATHS if load(path)[2]["chaos"].max() > 1e-9}
+    chaotic = {path.stem for path in PATHS if load(path)[1]["chaos"].max() > 1e-9}
     assert chaotic == {"3dof-hit_strike_o3_s1"}

@@ -72,6 +72,65 @@ def test_a_seed_gives_the_official_start(name, global_random):
         assert np.all(env.simulation.data.qvel[:-3] == 0.0)
 
 
+def hit_2025():
+    x, y = np.random.uniform(-0.7, -0.2), np.random.uniform(-HIT_WIDTH, HIT_WIDTH)
+    while True:
+        speed, angle = np.random.uniform(0, 0.5), np.random.uniform(-np.pi / 2 - 0.1, np.pi / 2 + 0.1)
+        rate, vy = np.random.uniform(-2, 2), np.sin(angle) * speed
+        if abs(vy * 1.0 + y) < 0.43:
+            return [x, y, 0, -np.cos(angle) * speed, vy, rate]
+
+
+def defend_2025():
+    x, y = np.random.uniform(0.4, 0.75), np.random.uniform(-0.4, 0.4)
+    speed, angle = np.random.uniform(1, 5), np.random.uniform(-0.75, 0.75)
+    return [x, y, 0, -np.cos(angle) * speed, np.sin(angle) * speed, np.random.uniform(-10, 10)]
+
+
+def prepare_2025():
+    areas = np.array([[[-0.8, -0.2], [0.41105, 0.47535]], [[-0.94, -0.8], [0.125, 0.47535]]])
+    side, bottom = np.prod(areas[:, :, 1] - areas[:, :, 0], axis=1)
+    area = areas[int(np.random.uniform(0, 1) >= side / (side + bottom))]
+    x, y = np.random.rand(2) * (area[:, 1] - area[:, 0]) + area[:, 0]
+    return [x, y * [1, -1][np.random.randint(2)], 0, 0, 0, 0]
+
+
+OFFICIAL_2025 = {
+    "hit": hit_2025,
+    "hit_single": hit_2025,
+    "defend": defend_2025,
+    "prepare": prepare_2025,
+    "tournament": serve,
+}
+
+
+@pytest.mark.parametrize("name", OFFICIAL_2025)
+def test_a_seed_gives_the_official_start_of_2025(name, global_random):
+    env = envs.make(name, edition="2025")
+    wrapper = envs.AirHockeyChallengeWrapper(name, edition="2025")
+    for seed in range(60):
+        env.reset(seed=seed)
+        global_random.seed(seed)
+        expected = OFFICIAL_2025[name]()
+        np.testing.assert_allclose(env.base_observation[:6], expected, rtol=0, atol=1e-15)
+        if name != "tournament":  # whose wrapper draws the side when it is made
+            global_random.seed(seed)
+            assert wrapper.reset()[:6].tobytes() == env.true_observation[:6].tobytes()
+
+
+def test_the_hits_of_2025_are_drawn_again_until_they_stay_clear_of_the_side(global_random):
+    env = envs.make("hit", edition="2025")
+    again = 0
+    for seed in range(300):
+        env.reset(seed=seed)
+        y, vy = env.base_observation[1], env.base_observation[4]
+        assert abs(y + vy) < 0.43
+        global_random.seed(seed)
+        first = moving_hit()
+        again += abs(first[1] + first[4]) >= 0.43
+    assert again > 20
+
+
 @ALL
 def test_episodes_after_a_seed_go_on_in_the_official_stream(name, global_random):
     env = envs.make(name)

@@ -9,7 +9,8 @@ import pytest
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.engines import cluster
 from airhockey.evaluator.engines.cluster import Cluster, engine_of
-from airhockey.evaluator.engines.engine import InProcess, JobFailed
+from airhockey.evaluator.engines.engine import InProcess
+from airhockey.evaluator.engines.pool import JobFailed
 from airhockey.evaluator.engines.processes import Processes
 
 
@@ -58,3 +59,13 @@ def test_which_engine() -> None:
     for wrong in ("local:", "local:0", "local:-1", "local:two", "local:²"):
         with pytest.raises(ConfigurationError, match="positive number"):
             engine_of(wrong, 1)
+
+
+def test_a_local_cluster_takes_nobody_without_its_certificate() -> None:
+    distributed = pytest.importorskip("distributed")
+    with cluster._connected(Cluster("local:1")) as client:
+        address = client.scheduler.address
+        assert address.startswith("tls://")
+        for stranger in (address, address.replace("tls://", "tcp://")):
+            with pytest.raises((OSError, TypeError)):
+                distributed.Client(stranger, timeout="2s")

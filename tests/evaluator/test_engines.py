@@ -5,8 +5,9 @@ import engine_functions
 import pytest
 
 from airhockey.errors import AirHockeyError
-from airhockey.evaluator.engines.engine import InProcess, JobFailed
-from airhockey.evaluator.engines.processes import Processes, engine_for
+from airhockey.evaluator.engines.engine import InProcess, engine_for
+from airhockey.evaluator.engines.pool import JobFailed
+from airhockey.evaluator.engines.processes import Processes
 
 
 def results(engine: Any, function: Any, jobs: Any) -> dict[Any, Any]:
@@ -60,14 +61,33 @@ def test_workers_that_cannot_start_are_an_error_not_a_thousand_lost_jobs(monkeyp
         results(Processes(1), engine_functions.square, range(1000))
 
 
-class _NoUnpickling:
-    """A context whose processes die before they say hello."""
+def test_a_worker_that_dies_while_it_starts_costs_a_retry(monkeypatch: pytest.MonkeyPatch) -> None:
+    context = _NoUnpickling(failures=2)
+    monkeypatch.setattr("airhockey.evaluator.engines.workers.get_context", lambda _: context)
+    assert results(Processes(2), engine_functions.square, range(5)) == {n: n * n for n in range(5)}
+    assert context.failures <= 0
 
-    def __init__(self) -> None:
+
+def test_nothing_is_imported_from_the_present_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("pickle", "threading", "numpy", "socket"):
+        (tmp_path / f"{name}.py").write_text(f"open({str(tmp_path / 'mark')!r}, 'w')\nraise ImportError")
+    monkeypatch.chdir(tmp_path)
+    assert results(Processes(2), engine_functions.square, range(3)) == {0: 0, 1: 1, 2: 4}
+    assert not (tmp_path / "mark").exists()
+
+
+class _NoUnpickling:
+    """A context whose first processes die before they say hello."""
+
+    def __init__(self, failures: int = 1000) -> None:
+        self.failures = failures
         import multiprocessing
 
         self._context = multiprocessing.get_context("spawn")
         self.Pipe = self._context.Pipe
 
     def Process(self, target: Any, args: Any, daemon: bool) -> Any:
+        self.failures -= 1
+        if self.failures < 0:
+            return self._context.Process(target=target, args=args, daemon=daemon)
         return self._context.Process(target=exit, args=(5,), daemon=daemon)

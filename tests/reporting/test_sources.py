@@ -13,7 +13,7 @@ from results import ENV, EPISODES, Results
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options
 from airhockey.evaluator.evaluation import begin
-from airhockey.evaluator.runs.reader import Match, Nothing, Run, Tournament, open_source, short_name
+from airhockey.evaluator.runs.reader import Match, Run, Tournament, Unreadable, open_source, short_name
 from airhockey.evaluator.runs.trajectories import read_episodes, write
 from airhockey.reporting import report
 
@@ -144,7 +144,7 @@ def test_what_holds_nothing_says_why(results: Results, tmp_path: Path) -> None:
         ("unplayed", "no game is finished"),
     ):
         source = open_source(tmp_path / name)
-        assert isinstance(source, Nothing)
+        assert isinstance(source, Unreadable)
         assert said in source.notes[-1]
         with pytest.raises(ConfigurationError, match=said):
             report([tmp_path / name])
@@ -202,6 +202,6 @@ def test_a_line_of_a_journal_that_is_no_text_is_said_and_the_others_are_read(res
         for file in folder.glob("*.h5"):
             file.unlink()
         source = open_source(folder)
-        assert not isinstance(source, Nothing)
+        assert not isinstance(source, Unreadable)
         assert len(source.records) == read
         assert any("1 line of journal.jsonl cannot be read" in note for note in source.notes)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from submission_examples import EXAMPLES
 
-from airhockey.evaluator.isolation.launch import why_no_sandbox
+from airhockey.evaluator.isolation.sandbox import why_no_sandbox
 
 SAVE = """
 import sys

@@ -9,11 +9,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from submission_examples import SUBMISSIONS
+from submission_examples import SUBMISSIONS, ZOO
 from tools import needs_opencv
 
 from airhockey.agents.packaging.packing import pack
 from airhockey.evaluator.isolation.limits import Limits
+from airhockey.evaluator.play.build_seats import Entrant
 from airhockey.evaluator.validation import Trial, try_out, validate
 
 LIMITS = Limits(start=60.0, patience=20.0)
@@ -30,7 +31,7 @@ def test_our_submissions_are_packed_validated_and_played(name: str, tmp_path: Pa
 
 def test_our_packed_agent_plays_in_the_sandbox(sandbox: None, tmp_path: Path) -> None:
     packed = pack(SUBMISSIONS / "planner", tmp_path / "packed.zip")
-    outcome = try_out(str(packed.path), "7dof-hit", "sandbox", LIMITS, 20)
+    outcome = try_out(Entrant(str(packed.path), isolate="sandbox", limits=LIMITS), "7dof-hit", 20)
     assert isinstance(outcome, Trial) and outcome.steps == 20 and outcome.start < 30.0
 
 
@@ -127,6 +128,50 @@ def build_agent(env_info, **kwargs):
 @pytest.mark.parametrize("task", ["3dof-defend", "tournament"])
 def test_an_agent_with_preprocessors_is_as_fit_as_the_evaluator_finds_it(tmp_path: Path, task: str) -> None:
     (tmp_path / "agent_builder.py").write_text(PREPROCESSED)
-    outcome = try_out(str(tmp_path), task, "none", LIMITS, 5)
+    outcome = try_out(Entrant(str(tmp_path), limits=LIMITS), task, 5)
     assert isinstance(outcome, Trial), outcome
     assert outcome.steps == 5
+
+
+NEEDS_MUSHROOM = pytest.mark.skipif(importlib.util.find_spec("mushroom_rl") is None, reason="needs the extra mushroom")
+
+
+@NEEDS_MUSHROOM
+def test_a_checkout_plays_what_its_configuration_names_on_both_sides(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ZOO / "no_base_class")
+    verdict = validate(Path("."), "process", LIMITS, steps=3)
+    assert [trial.env for trial in verdict.trials] == ["3dof-defend", "7dof-hit", "tournament", "tournament (away)"]
+    assert verdict.name == "no_base_class" and "\n" not in verdict.conclusion
+    slow = [problem for problem in verdict.problems if "ms" in problem.what]  # a busy machine
+    assert list(verdict.problems) == slow
+    assert verdict.conclusion.startswith("no_base_class: plays 3dof-defend, 7dof-hit, tournament, tournament (away)")
+    assert any("layout is the official one" in note for note in verdict.notes)
+
+
+@NEEDS_MUSHROOM
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("helper_out_of_reach", ["does not play, because", "training/tactics", "the entry's cause", "mend the import"]),
+        ("package_missing", ["does not play, because", "this installation's cause", "what to do: install it"]),
+        ("size_one_arrays", ["the libraries' cause", "x.item()", "--python PATH"]),
+        ("template_as_it_was", ["NotImplementedError", "the entry's cause", "name in env what the agent plays"]),
+    ],
+)
+def test_one_line_says_why_whose_cause_and_what_to_do(name: str, words: list[str]) -> None:
+    verdict = validate(ZOO / name, "process", LIMITS, steps=3)
+    assert verdict.problems and "\n" not in verdict.conclusion
+    assert [word for word in words if word not in verdict.conclusion] == []
+
+
+@NEEDS_MUSHROOM
+def test_the_verdict_says_whose_copy_of_the_package_plays() -> None:
+    verdict = validate(ZOO / "own_copy_extended", "process", LIMITS, steps=3)
+    assert any("its own copy" in note and "AgentBase.get_puck_history" in note for note in verdict.notes)
+
+
+def test_an_environment_that_there_is_not_is_named(bad: Callable[..., str]) -> None:
+    folder = Path(bad())
+    (folder / "agent_config.yml").write_text("env: [7dof-hot]\n")
+    verdict = validate(folder, "process", LIMITS, steps=3)
+    assert "7dof-hit" in verdict.problems[0].what and verdict.problems[0].where == "env of agent_config.yml"

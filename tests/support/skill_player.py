@@ -7,7 +7,6 @@ from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.kalman import PuckFilter
-from airhockey.agents.estimation.prediction import PuckPredictor
 from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, to_table
 
@@ -20,7 +19,7 @@ class SkillPlayer:
         info = self.env.env_info
         self.skill = make_skill(info)
         self.controller = JointController(ArmKinematics(spec_of(info)), Workspace.of(info), info["dt"])
-        self.filter, self.predictor = PuckFilter(info["dt"]), PuckPredictor()
+        self.filter = PuckFilter(info["dt"])
 
     def situation(self, observation, step):
         info = self.env.env_info
@@ -28,9 +27,19 @@ class SkillPlayer:
             self.filter.reset()
             self.controller.reset(observation[info["joint_pos_ids"]])
         puck = np.array([*to_table(observation[info["puck_pos_ids"]]), 0.0])
-        near = np.hypot(*(puck[:2] - to_table(self.controller.tip_position()))) < CONTACT + 0.012
+        tip = to_table(self.controller.tip_position())
+        near = np.hypot(*(puck[:2] - tip)) < CONTACT + 0.012
         estimate = self.filter.update(puck, observation[info["puck_vel_ids"]], bool(near))
-        return Situation(estimate, self.predictor, self.controller, None, step, info["dt"])
+        return Situation(
+            estimate,
+            tip,
+            self.controller.tip_velocity(),
+            None,
+            info["dt"],
+            step,
+            self.controller.move,
+            self.controller.state.position,
+        )
 
     def play(self, seed):
         """One episode: the last info, whether any constraint was violated, and the last true state of the puck."""

@@ -1,6 +1,7 @@
 """The viewer in a real browser, served by the command on this machine alone."""
 
 import io
+import re
 import signal
 import socket
 import subprocess
@@ -48,8 +49,9 @@ def served(run_folder: Path) -> Iterator[Served]:
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         assert process.stdout is not None
         said = process.stdout.readline()
-        assert f"http://127.0.0.1:{port}/" in said, said + process.stdout.read()
-        yield Served(process, f"http://127.0.0.1:{port}/", port)
+        address = re.search(rf"http://127.0.0.1:{port}/\?token=\S+", said)
+        assert address is not None, said + process.stdout.read()
+        yield Served(process, address[0], port)
         process.send_signal(signal.SIGINT)
         rest = process.stdout.read()
         assert process.wait(30) == 0, rest

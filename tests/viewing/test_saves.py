@@ -4,12 +4,12 @@ import re
 from pathlib import Path
 
 import numpy as np
-from airhockey.evaluator.play.game_player import Game
 from courses import Course
 from games import JOB, side
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator.match import MatchFolder, MatchOptions
+from airhockey.evaluator.play.game import Game
 from airhockey.evaluator.runs.game_records import GameOptions, GameRecord
 from airhockey.evaluator.runs.manifest import Manifest
 from airhockey.reporting import report

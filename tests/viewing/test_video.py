@@ -13,7 +13,7 @@ from airhockey.errors import MissingDependencyError
 from airhockey.evaluator.runs.journal import read_journal
 from airhockey.evaluator.runs.records import EpisodeRecord
 from airhockey.viewing import offscreen
-from airhockey.viewing.video_writer import open_film
+from airhockey.viewing.video_writer import open_video
 
 SMALL = "--size 160x96 --quality fast --quiet"
 STEP = 0.02
@@ -97,7 +97,7 @@ def test_a_film_that_fails_is_not_there(tmp_path: Path) -> None:
     (tmp_path / "f.mp4").write_bytes(b"the old one")
 
     def fail() -> None:
-        with open_film(tmp_path / "f.mp4", 64, 48, 25) as film:
+        with open_video(tmp_path / "f.mp4", 64, 48, 25) as film:
             film.add(np.zeros((48, 64, 3), dtype=np.uint8))
             raise ZeroDivisionError
 

@@ -57,6 +57,20 @@ def _matrix(quaternion: tuple[float, float, float, float]) -> Array:
     )
 
 
+class TaskMotion(NamedTuple):
+    """Task coordinates at a state.
+
+    Attributes:
+        values: In [m]. Shape (r,).
+        rows: Their derivatives by the joints, in [m]/[rad]. Shape (r, n).
+        drift: Their accelerations at q̈ = 0, J̇ q̇, in [m]/[s²]. Shape (r,).
+    """
+
+    values: Array
+    rows: Array
+    drift: Array
+
+
 @compiled
 def task_coordinates(chain: Chain, q: Array) -> tuple[Array, Array]:
     """Tip x, y, z, wrist height and elbow height in the robot frame, and their derivatives by the joints.

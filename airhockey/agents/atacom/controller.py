@@ -3,10 +3,12 @@
 The command is the state: it is integrated from the first observation on, and noise in later ones cannot move it.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.atacom.chain import Chain, chain_of, task_coordinates
+from airhockey.agents.atacom.chain import Chain, TaskMotion, chain_of, task_coordinates
 from airhockey.agents.atacom.following import Gains, action_of_joints, action_of_tip, gains_of
 from airhockey.agents.atacom.limits import Limits, limits_of
 from airhockey.agents.atacom.parameters import AtacomParameters, atacom_parameters
@@ -40,7 +42,7 @@ class AtacomController:
         p = parameters or atacom_parameters(spec)
         self.spec, self.dt = spec, dt
         self._substeps = p.substeps
-        self._chain, self._limits, self._gains = chain_of(spec), limits_of(spec, p), gains_of(spec, p)
+        self._model = Model(chain_of(spec), limits_of(spec, p), gains_of(spec, p))
         self.reset(np.array(spec.start))
         self.step(np.zeros(2))
         self.step(np.zeros(spec.n_joints))
@@ -67,29 +69,34 @@ class AtacomController:
             Joint command for interpolation order 3: position [rad] and velocity [rad]/[s]. Shape (2, n).
         """
         clipped = np.clip(np.asarray(action, dtype=np.float64), -1.0, 1.0)
-        self.q, self.velocity = integrate(
-            self._chain, self._limits, self._gains, clipped, self.q, self.velocity, self.dt, self._substeps
-        )
+        self.q, self.velocity = integrate(self._model, clipped, self.q, self.velocity, self.dt, self._substeps)
         self._look()
         return np.array([self.q, self.velocity])
 
     def constraint_values(self) -> Array:
         """c = k + K_f k̇ of the command, with the margins: not above 0. Shape (K,)."""
-        values, rows = task_coordinates(self._chain, self.q)
+        values, rows = task_coordinates(self._model.chain, self.q)
         zero = np.zeros(len(values))
-        return np.asarray(constraint_rows(self._limits, values, rows, zero, self.q, self.velocity)[0])
+        return np.asarray(constraint_rows(self._model.limits, values, rows, zero, self.q, self.velocity)[0])
 
     def _look(self) -> None:
         """Where the command puts the tip: `tip` [m] and `tip_velocity` [m]/[s] in the robot frame. Shapes (2,), (2,)."""
-        values, rows = task_coordinates(self._chain, self.q)
+        values, rows = task_coordinates(self._model.chain, self.q)
         self.tip, self.tip_velocity = values[:2], rows[:2] @ self.velocity
 
 
+class Model(NamedTuple):
+    """What a step is computed from: the arm, what it must keep, how it follows."""
+
+    chain: Chain
+    limits: Limits
+    gains: Gains
+
+
 @compiled
-def integrate(
-    chain: Chain, limits: Limits, gains: Gains, action: Array, q: Array, velocity: Array, dt: float, substeps: int
-) -> tuple[Array, Array]:
+def integrate(model: Model, action: Array, q: Array, velocity: Array, dt: float, substeps: int) -> tuple[Array, Array]:
     """The command after a control step, in [rad] and [rad]/[s]. Shapes (n,), (n,)."""
+    chain, limits, gains = model
     h = dt / substeps
     q, velocity = q.copy(), velocity.copy()
     for _ in range(substeps):
@@ -97,7 +104,7 @@ def integrate(
         ahead = task_coordinates(chain, q + _NUDGE * velocity)[1]
         drift = (ahead - rows) @ velocity / _NUDGE
         if action.size == 2:
-            wanted = action_of_tip(action, gains, values, rows, drift, q, velocity)
+            wanted = action_of_tip(action, gains, TaskMotion(values, rows, drift), q, velocity)
         else:
             wanted = action_of_joints(action, gains, velocity)
         _, b, jacobian, a = constraint_rows(limits, values, rows, drift, q, velocity)

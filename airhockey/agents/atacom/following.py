@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.atacom.chain import Z
+from airhockey.agents.atacom.chain import TaskMotion, Z
 from airhockey.agents.atacom.parameters import AtacomParameters
 from airhockey.agents.compiling import compiled
 from airhockey.envs.specs import RobotSpec
@@ -64,20 +64,19 @@ def action_of_joints(wanted: Array, gains: Gains, velocity: Array) -> Array:
 
 
 @compiled
-def action_of_tip(
-    wanted: Array, gains: Gains, values: Array, rows: Array, drift: Array, q: Array, velocity: Array
-) -> Array:
+def action_of_tip(wanted: Array, gains: Gains, task: TaskMotion, q: Array, velocity: Array) -> Array:
     """The action of the joints that gives the tip a velocity.
 
     Args:
         wanted: Velocity of the tip, in units of `gains.speed`, in the robot frame. Shape (2,).
         gains: How it follows.
-        values, rows, drift: Task coordinates (r,), their derivatives (r, n) and their accelerations at q̈ = 0 (r,).
+        task: Of the tip and the links.
         q, velocity: Joint command. Shapes (n,), (n,).
 
     Returns:
         In units of the joints' largest accelerations, each entry within [−1, 1]. Shape (n,).
     """
+    values, rows, drift = task
     m = 3 if values.size > 2 else 2
     present = rows[:m] @ velocity
     asked = np.empty(m)

@@ -7,7 +7,9 @@ from numpy.typing import NDArray
 
 from airhockey.agents.atacom.controller import AtacomController
 from airhockey.agents.atacom.network import Network
-from airhockey.agents.atacom.skill import REPEAT, SKILLS, Situation, Skill
+from airhockey.agents.atacom.skill import REPEAT, SKILLS, LearnedTask
+from airhockey.agents.estimation.kalman import PuckEstimate
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import HOME
 from airhockey.errors import ConfigurationError, unknown
 
@@ -41,35 +43,41 @@ def trained(task: str, robot: str, source: str | Path | None = None) -> Network:
 
 
 class LearnedSkill:
-    """Plays a skill: an action every `REPEAT` control steps, and rest once there is nothing left to do.
+    """Plays a task: an action every `REPEAT` control steps, and rest once there is nothing left to do.
 
     Attributes:
-        resting: Whether the skill is finished.
+        name, phase, finished: See `Skill`.
     """
 
-    def __init__(self, skill: Skill, network: Network, controller: AtacomController) -> None:
+    def __init__(self, task: LearnedTask, network: Network, controller: AtacomController) -> None:
         """Put together.
 
         Args:
-            skill: What the network sees and when it is finished.
+            task: What the network sees and when it is finished.
             network: Trained for it.
             controller: Its command is moved.
         """
-        self.skill, self.network, self.controller = skill, network, controller
-        self.network(skill.observe(Situation(np.zeros(5), HOME, np.zeros(2))))  # the first call loads and compiles
-        self.start()
+        self.name, self.task, self.network, self.controller = task.name, task, network, controller
+        nothing = Situation(PuckEstimate(np.zeros(5), np.eye(5), 0), HOME, np.zeros(2))
+        self.network(task.observe(nothing))  # the first call loads and compiles
+        self.begin(nothing)
 
-    def start(self) -> None:
-        """The skill begins."""
-        self.resting = False
+    @property
+    def phase(self) -> str:
+        """Whether it is at rest."""
+        return "rest" if self.finished else "learned"
+
+    def begin(self, now: Situation) -> None:
+        """See `Skill.begin`."""
+        self.finished = False
         self._age = 0
 
-    def step(self, now: Situation) -> Array:
-        """The next joint command for interpolation order 3. Shape (2, n)."""
-        self.resting = self.resting or self.skill.finished(now)
-        if self.resting:
+    def act(self, now: Situation) -> Array:
+        """See `Skill.act`."""
+        self.finished = self.finished or self.task.finished(now)
+        if self.finished:
             return self.controller.step(np.zeros(2))
         if self._age % REPEAT == 0:
-            self._action = self.network(self.skill.observe(now)).astype(np.float64)
+            self._action = self.network(self.task.observe(now)).astype(np.float64)
         self._age += 1
         return self.controller.step(self._action)

@@ -4,13 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from airhockey.agents.atacom import features as f
 from airhockey.agents.atacom.controller import AtacomController
+from airhockey.agents.estimation.kalman import PuckEstimate
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import HOME, to_table
-
-Array = NDArray[np.float64]
 
 REPEAT = 2
 """Control steps that an action lasts: 0.04 s."""
@@ -19,21 +18,7 @@ ARRIVED = 0.015
 
 
 @dataclass(frozen=True)
-class Situation:
-    """What a skill decides on, in the table frame.
-
-    Attributes:
-        puck: x, y [m], ẋ, ẏ [m]/[s], yaw rate [rad]/[s], filtered. Shape (5,).
-        tip, tip_velocity: Of the command, in [m] and [m]/[s]. Shapes (2,), (2,).
-    """
-
-    puck: Array
-    tip: Array
-    tip_velocity: Array
-
-
-@dataclass(frozen=True)
-class Skill:
+class LearnedTask:
     """A task that is played by a network.
 
     Attributes:
@@ -49,21 +34,21 @@ class Skill:
     finished: Callable[[Situation], bool]
 
 
-def situation(puck: Array, controller: AtacomController) -> Situation:
-    """The situation of a controller's command and a puck's estimated state (5,)."""
+def situation(puck: PuckEstimate, controller: AtacomController) -> Situation:
+    """The situation of a controller's command and a puck."""
     return Situation(puck, to_table(controller.tip), controller.tip_velocity)
 
 
-DEFEND = Skill(
+DEFEND = LearnedTask(
     "defend",
     f.DEFEND_MIRROR,
-    lambda s: f.defend_features(s.puck, s.tip, s.tip_velocity),
-    lambda s: f.defended(s.puck, s.tip),
+    lambda s: f.defend_features(s.puck.state, s.tip, s.tip_velocity),
+    lambda s: f.defended(s.puck.state, s.tip),
 )
-HOME_SKILL = Skill(
+HOME_SKILL = LearnedTask(
     "home",
     f.HOME_MIRROR,
-    lambda s: f.home_features(s.puck, s.tip, s.tip_velocity),
+    lambda s: f.home_features(s.puck.state, s.tip, s.tip_velocity),
     lambda s: bool(np.hypot(*(HOME - s.tip)) < ARRIVED and np.hypot(*s.tip_velocity) < 0.1),
 )
 SKILLS = {skill.name: skill for skill in (DEFEND, HOME_SKILL)}

@@ -4,8 +4,8 @@
 
 Goldfarb and Idnani, "A numerically stable dual method for solving strictly convex quadratic programs", Mathematical
 Programming 27 (1983). With H = L Lᵀ and u = Lᵀx + L⁻¹g it is the search for the shortest u between bounds. It starts from the
-unconstrained minimum, u = 0, and takes up the row that is violated most, one after the other, dropping those whose multipliers
-would change sign; it ends after finitely many steps, at the minimum or where a row cannot be satisfied.
+unconstrained minimum, u = 0, and adds the row that is violated most, one after the other, dropping those whose multipliers would
+change sign; it ends after finitely many steps, at the minimum or where a row cannot be satisfied.
 
 The rows held, at most n, are kept as Q R with Q orthonormal. R is so small that it is made anew when a row is dropped.
 """
@@ -29,7 +29,20 @@ DEPENDENT = 1e-10
 ITERATIONS = 200
 
 
-class Held(NamedTuple):
+class Rows(NamedTuple):
+    """The rows scaled to length 1, as they are in u.
+
+    Attributes:
+        normal: Shape (m, n).
+        low, high: Their bounds. Shapes (m,).
+    """
+
+    normal: Array
+    low: Array
+    high: Array
+
+
+class ActiveSet(NamedTuple):
     """The rows held at one of their bounds.
 
     Attributes:
@@ -39,6 +52,7 @@ class Held(NamedTuple):
         multiplier: Shape (n,).
         basis: Qᵀ, and in the row after it the rest of the row that is looked at. Shape (n + 1, n).
         corner: R, with the same row in its last column. Shape (n + 1, n + 1).
+        along: Room for R⁻¹ times a column. Shape (n,).
     """
 
     row: NDArray[np.int64]
@@ -47,6 +61,7 @@ class Held(NamedTuple):
     multiplier: Array
     basis: Array
     corner: Array
+    along: Array
 
 
 @compiled
@@ -71,23 +86,24 @@ def minimise(hessian: Array, gradient: Array, rows: Array, lower: Array, upper: 
         if upper[i] - lower[i] < -SAME:
             return x, False
     solve_forward(root, x)
-    scaled, low, high = _shortest_vector_problem(root, x, rows, lower, upper)
+    scaled = _shortest_vector_problem(root, x, rows, lower, upper)
     u = np.zeros(n)
-    held = Held(
+    held = ActiveSet(
         np.zeros(n, np.int64),
         np.zeros(n),
         np.zeros(n),
         np.zeros(n),
         np.zeros((n + 1, n)),
         np.zeros((n + 1, n + 1)),
+        np.empty(n),
     )
-    along, count, found = np.empty(n), 0, False
+    count, found = 0, False
     for _ in range(ITERATIONS):
-        row, sign = _most_violated(scaled, low, high, u)
+        row, sign = _most_violated(scaled, u)
         if row < 0:
             found = True
             break
-        count = _take_up(row, sign, scaled, low, high, u, held, count, along)
+        count = _add_row(row, sign, scaled, u, held, count)
         if count < 0:
             break
     for i in range(n):
@@ -97,10 +113,8 @@ def minimise(hessian: Array, gradient: Array, rows: Array, lower: Array, upper: 
 
 
 @compiled
-def _shortest_vector_problem(
-    root: Array, shift: Array, rows: Array, lower: Array, upper: Array
-) -> tuple[Array, Array, Array]:
-    """Rows of length 1 and bounds in u = Lᵀx + shift. Shapes (m, n), (m,), (m,)."""
+def _shortest_vector_problem(root: Array, shift: Array, rows: Array, lower: Array, upper: Array) -> Rows:
+    """The rows in u = Lᵀx + shift."""
     m, n = rows.shape
     scaled, low, high = rows.copy(), np.empty(m), np.empty(m)
     for i in range(m):
@@ -114,12 +128,13 @@ def _shortest_vector_problem(
         for k in range(n):
             row[k] *= scale
         low[i], high[i] = (lower[i] + offset) * scale, (upper[i] + offset) * scale
-    return scaled, low, high
+    return Rows(scaled, low, high)
 
 
 @in_place
-def _most_violated(scaled: Array, low: Array, high: Array, u: Array) -> tuple[int, float]:
+def _most_violated(rows: Rows, u: Array) -> tuple[int, float]:
     """Number of the row that u violates most, or −1; and 1 if it is below its lower bound, −1 if above its upper one."""
+    scaled, low, high = rows
     worst, which, sign = TOLERANCE, -1, 1.0
     for i in range(len(low)):
         value = 0.0
@@ -133,11 +148,20 @@ def _most_violated(scaled: Array, low: Array, high: Array, u: Array) -> tuple[in
 
 
 @in_place
-def _take_up(
-    row: int, sign: float, scaled: Array, low: Array, high: Array, u: Array, held: Held, count: int, along: Array
-) -> int:
-    """Move u until a violated row holds, in place. Returns the number of rows held then; −1 if the row cannot hold."""
-    n, multiplier = len(u), 0.0
+def _add_row(row: int, sign: float, rows: Rows, u: Array, held: ActiveSet, count: int) -> int:
+    """Add a violated row to those held, moving u in place until it holds, and drop those in the way.
+
+    Args:
+        row, sign: From `_most_violated`.
+        rows: All of them.
+        u: Shape (n,).
+        held: The rows held so far.
+        count: Their number.
+
+    Returns:
+        The number of rows held then; −1 if the row cannot hold.
+    """
+    (scaled, low, high), along, n, multiplier = rows, held.along, len(u), 0.0
     bound = low[row] if sign > 0.0 else -high[row]
     for _ in range(ITERATIONS):
         length = _append(held, count, scaled[row], sign)
@@ -173,8 +197,8 @@ def _take_up(
 
 
 @in_place
-def _append(held: Held, count: int, row: Array, sign: float) -> float:
-    """Split sign · row into what the rows held span (column `count` of R) and the rest (row `count` of Qᵀ): its length."""
+def _append(held: ActiveSet, count: int, row: Array, sign: float) -> float:
+    """Split sign · row into what the rows held span (column `count` of R) and the rest (row `count` of Qᵀ). Gives its length."""
     n, rest = len(row), held.basis[count]
     for k in range(n):
         rest[k] = sign * row[k]
@@ -195,7 +219,7 @@ def _append(held: Held, count: int, row: Array, sign: float) -> float:
 
 
 @in_place
-def _shares(held: Held, count: int, along: Array) -> None:
+def _shares(held: ActiveSet, count: int, along: Array) -> None:
     """Write R⁻¹ times column `count` of R: how the last row is made of those held."""
     for j in range(count):
         i = count - 1 - j
@@ -206,7 +230,7 @@ def _shares(held: Held, count: int, along: Array) -> None:
 
 
 @in_place
-def _settle(held: Held, count: int, u: Array, work: Array) -> None:
+def _settle(held: ActiveSet, count: int, u: Array, work: Array) -> None:
     """Write the shortest u that has every row held at its bound."""
     for k in range(len(u)):
         u[k] = 0.0
@@ -220,7 +244,7 @@ def _settle(held: Held, count: int, u: Array, work: Array) -> None:
 
 
 @in_place
-def _drop(held: Held, count: int, place: int, scaled: Array) -> int:
+def _drop(held: ActiveSet, count: int, place: int, scaled: Array) -> int:
     """Forget the row held at a place. Returns the number of rows still held."""
     for j in range(place, count - 1):
         held.row[j], held.sign[j] = held.row[j + 1], held.sign[j + 1]

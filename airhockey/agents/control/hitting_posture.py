@@ -3,7 +3,7 @@
     maximise ‖dᵀ J(q)‖²   subject to   x(q) = x_hit and the joint limits
 
 (Liu et al., IROS 2021), by projected gradient: an ascent step in the null space of J, then inverse kinematics back to
-the point.
+the point. It is offered to players; those of the package hit without.
 """
 
 from dataclasses import dataclass
@@ -16,6 +16,9 @@ from airhockey.agents.control.kinematics import ArmKinematics
 from airhockey.agents.control.speed_limit import largest_speed
 
 Array = NDArray[np.float64]
+
+FIRST_STEP = 0.3
+"""Length of an ascent step at first, in [rad]."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +36,6 @@ def hitting_posture(
     initial: Array,
     velocity_limit: Array,
     iterations: int = 20,
-    step: float = 0.3,
 ) -> HittingPosture | None:
     """The best posture found, starting from a present one.
 
@@ -44,12 +46,11 @@ def hitting_posture(
         initial: Warm start, in [rad]. Shape (n,).
         velocity_limit: Lower and upper joint velocities, in [rad]/[s]. Shape (2, n).
         iterations: Ascent steps; each costs about 0.1 ms.
-        step: Length of an ascent step at first, in [rad].
 
     Returns:
         The posture, or None where the point is out of reach.
     """
-    m = kinematics.n_coordinates
+    m, step = kinematics.n_coordinates, FIRST_STEP
     d = np.zeros(m)
     d[:2] = direction
     q = inverse_kinematics(kinematics, point, initial)

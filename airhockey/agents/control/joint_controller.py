@@ -5,18 +5,20 @@ The controller never looks at the joints again after the first observation: its 
 equation 4.1.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.control.aqp import AnchoredQp
 from airhockey.agents.control.kinematics import ArmKinematics
+from airhockey.agents.control.kinematics_choice import chosen_kinematics
 from airhockey.agents.control.parameters import ControlParameters, control_parameters
 from airhockey.agents.control.qp import DEFAULT, make_solver
 from airhockey.agents.control.tip_velocity_control import (
     Demand,
     advance,
+    advance_to,
     demand,
     end_state,
     relaxed_demand,
@@ -25,12 +27,12 @@ from airhockey.agents.control.tip_velocity_control import (
     tip_velocity_to,
 )
 from airhockey.agents.control.workspace import Workspace
+from airhockey.agents.table import to_robot
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class JointState:
+class JointState(NamedTuple):
     """A joint command, and where it puts the rod tip.
 
     Attributes:
@@ -67,7 +69,7 @@ class JointState:
 
     def as_action(self) -> Array:
         """The command for interpolation order 3, a fresh array. Shape (2, n)."""
-        return self.values[:-4].reshape((2, -1)).copy()
+        return self.values[:-4].copy().reshape(2, -1)
 
 
 class JointController:
@@ -99,11 +101,12 @@ class JointController:
             parameters: By default the package's own for the robot.
         """
         spec = kinematics.spec
-        self.kinematics, self.workspace, self.dt = kinematics, workspace, dt
         self.parameters = p = parameters or control_parameters(spec)
+        self.kinematics, self.workspace, self.dt = chosen_kinematics(kinematics, p.kinematics), workspace, dt
         self._model = step_model(spec, p, workspace, dt)
-        # The package's own solver is part of the compiled step.
-        self._qp = AnchoredQp(np.array(p.anchor_weights), make_solver(p.solver)) if p.solver != DEFAULT else None
+        # The package's own solver and kinematics are parts of the compiled step.
+        compiled = p.solver == DEFAULT and self.kinematics is kinematics
+        self._qp = None if compiled else AnchoredQp(np.array(p.anchor_weights), make_solver(p.solver))
         self._posture = np.array(p.anchor)
         self.height = spec.desired_height
         self.exact = True
@@ -142,6 +145,10 @@ class JointController:
         self.state, self.exact = self.next_state(self.state, target, velocity, anchor)
         return self.state.as_action()
 
+    def move(self, target: Array, velocity: Array | None = None, anchor: Array | None = None) -> Array:
+        """The same for a target in the table frame."""
+        return self.step(to_robot(target), velocity, anchor)
+
     def brake(self) -> Array:
         """Bring the rod tip to rest as fast as the limits allow. Returns the joint command. Shape (2, n)."""
         self.state, self.exact = self._advance(self.state, np.zeros(2), self._posture)
@@ -156,21 +163,29 @@ class JointController:
         self, state: JointState, target: Array, velocity: Array | None = None, anchor: Array | None = None
     ) -> tuple[JointState, bool]:
         """What `step` would command from a state, and whether it meets the target exactly. Changes nothing."""
-        anchor = self._posture if anchor is None else anchor
+        if anchor is None:
+            anchor = self._posture
+        if self._qp is None:
+            after = np.empty(state.values.size)
+            return JointState(after), advance_to(state.values, target, velocity, anchor, self._model, after)
         return self._advance(state, tip_velocity_to(state.values[-4:], target, velocity, self._model), anchor)
 
     def _advance(self, state: JointState, tip_velocity: Array, anchor: Array) -> tuple[JointState, bool]:
         """One step whose end has a given tip velocity (2,), as nearly as the limits allow."""
         if self._qp is None:
-            values, exact = advance(state.values, tip_velocity, anchor, self._model)
-            return JointState(values), exact
+            after = np.empty(state.values.size)
+            return JointState(after), advance(state.values, tip_velocity, anchor, self._model, after)
         model = self._model[0]
         asked = demand(state.position, state.velocity, tip_velocity, anchor, model)
+        end = state.position + self.dt * state.velocity
+        asked = asked._replace(jacobian=self.kinematics.jacobian(end)[: len(asked.jacobian)])
         new_velocity = self._qp.solve(asked.jacobian, asked.velocity, asked.anchor, asked.limits)
         exact = new_velocity is not None
         if new_velocity is None:
             new_velocity = self._nearest(self._qp, asked)
-        return JointState(end_state(state.position, state.velocity, new_velocity, model)), exact
+        after = np.empty(state.values.size)
+        end_state(state.values, new_velocity, model, after)
+        return JointState(after), exact
 
     def _nearest(self, qp: AnchoredQp, asked: Demand) -> Array:
         """`joint_velocity_for` by another solver, where what is asked cannot be done. Shape (n,)."""

@@ -134,4 +134,4 @@ def _import(module: str) -> Any:
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:
-        raise MissingDependencyError(f"{module} is not installed: pip install {module.partition('.')[0]}") from error
+        raise MissingDependencyError(f"{module} is not installed: pip install 'airhockey[control]'") from error

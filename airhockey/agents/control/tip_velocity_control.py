@@ -211,21 +211,20 @@ def stopping(limits: VelocityLimits) -> Array:
 
 
 @compiled
-def end_state(q: Array, joint_velocity: Array, new_velocity: Array, model: StepModel) -> Array:
-    """Joint position and velocity after a step that ends with a velocity (4.1), then the tip's. Shape (2 n + 4,)."""
-    n, state = len(q), np.empty(2 * len(q) + 4)
+def end_state(state: Array, new_velocity: Array, model: StepModel, after: Array) -> None:
+    """Write the state after a step that ends with a joint velocity (4.1). Both as for `advance`. Shape (2 n + 4,)."""
+    n = len(new_velocity)
     for i in range(n):
-        state[i] = q[i] + 0.5 * model.dt * (joint_velocity[i] + new_velocity[i])
-        state[n + i] = new_velocity[i]
-    positions, axes = locate(model, state[:n])
+        after[i] = state[i] + 0.5 * model.dt * (state[n + i] + new_velocity[i])
+        after[n + i] = new_velocity[i]
+    positions, axes = locate(model, after[:n])
     moving = _times(jacobian_of(positions, axes, n), new_velocity)
-    state[2 * n], state[2 * n + 1] = positions[n, 0], positions[n, 1]
-    state[2 * n + 2], state[2 * n + 3] = moving[0], moving[1]
-    return state
+    after[2 * n], after[2 * n + 1] = positions[n, 0], positions[n, 1]
+    after[2 * n + 2], after[2 * n + 3] = moving[0], moving[1]
 
 
 @compiled
-def advance(state: Array, tip_velocity: Array, anchor: Array, packed: NDArray[Any]) -> tuple[Array, bool]:
+def advance(state: Array, tip_velocity: Array, anchor: Array, packed: NDArray[Any], after: Array) -> bool:
     """One step whose end has a given tip velocity, as nearly as the limits allow.
 
     Args:
@@ -233,15 +232,26 @@ def advance(state: Array, tip_velocity: Array, anchor: Array, packed: NDArray[An
         tip_velocity: In [m]/[s]. Shape (2,).
         anchor: Joint position that the null space is drawn to, in [rad]. Shape (n,).
         packed: From `step_model`.
+        after: Where the state after it is written: to give an array back costs more. Shape (2 n + 4,).
 
     Returns:
-        The state after it, and whether it is what was asked, exactly.
+        Whether it is what was asked, exactly.
     """
     model = packed[0]
     n = len(anchor)
     q, joint_velocity = state[:n], state[n : 2 * n]
     new_velocity, exact = joint_velocity_for(demand(q, joint_velocity, tip_velocity, anchor, model), model)
-    return end_state(q, joint_velocity, new_velocity, model), exact
+    end_state(state, new_velocity, model, after)
+    return exact
+
+
+@compiled
+def advance_to(
+    state: Array, target: Array, velocity: Array | None, anchor: Array, packed: NDArray[Any], after: Array
+) -> bool:
+    """One step towards a target, with the arguments of `tip_velocity_to` and `advance`: a single call of compiled code."""
+    wanted = tip_velocity_to(state[len(state) - 4 :], target, velocity, packed)
+    return advance(state, wanted, anchor, packed, after)
 
 
 @compiled

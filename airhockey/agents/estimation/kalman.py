@@ -48,8 +48,7 @@ class Noise:
     surprise: float = 30.0
 
 
-@dataclass(frozen=True)
-class PuckEstimate:
+class PuckEstimate(NamedTuple):
     """What is known of the puck at one moment, in the table frame.
 
     Attributes:
@@ -78,61 +77,94 @@ class PuckEstimate:
         return hypot(self.state[2], self.state[3])
 
 
+class MotionModel(NamedTuple):
+    """What a prediction is computed from; see `PuckMotion`.
+
+    Attributes:
+        constants: `PuckMotion.constants`. Shape (8,).
+        e_spread, k_spread: Standard deviations of restitution and slip.
+    """
+
+    constants: Array
+    e_spread: float
+    k_spread: float
+
+
+def motion_model(motion: PuckMotion) -> MotionModel:
+    """The model of a puck's motion."""
+    return MotionModel(motion.constants, motion.restitution_spread, motion.slip_spread)
+
+
 class FilterModel(NamedTuple):
-    """What a step of the filter is computed from; see `Noise` and `PuckMotion`.
+    """What a step of the filter is computed from besides `MotionModel`; see `Noise`.
 
     Attributes:
         dt: Time between observations, in [s].
-        constants: `PuckMotion.constants`. Shape (8,).
         observation: Covariance of an observation. Shape (5, 5).
         drift, contact: Covariance that a step adds, and what it adds where a mallet may touch the puck. Shapes (5, 5).
-        e_spread, k_spread: Of restitution and slip.
     """
 
     dt: float
-    constants: Array
     observation: Array
     drift: Array
     contact: Array
     drift_share: float
     surprise: float
-    e_spread: float
-    k_spread: float
+
+
+class Track(NamedTuple):
+    """What the filter remembers from one observation to the next.
+
+    Attributes:
+        state, covariance, lost: The latest estimate. Shapes (5,), (5, 5).
+        last: The latest observation. Shape (5,).
+        begun: Whether there was one.
+    """
+
+    state: Array
+    covariance: Array
+    lost: int
+    last: Array
+    begun: bool
+
+
+def filter_record(
+    dt: float, noise: Noise | None = None, motion: PuckMotion | None = None, *more: NamedTuple
+) -> NDArray[Any]:
+    """All that `follow` reads and remembers, as a record: `MotionModel`, `FilterModel`, `Track` and the caller's own parts.
+
+    Args:
+        dt: Time between observations, in [s].
+        noise: What the filter assumes.
+        motion: Constants of the puck's motion.
+        more: Other fields that the record shall have.
+    """
+    n = noise or Noise()
+    model = FilterModel(
+        dt=dt,
+        observation=np.diag([n.position, n.position, n.velocity, n.velocity, n.yaw_rate]) ** 2,
+        drift=np.diag([1e-5, 1e-5, n.drift_velocity, n.drift_velocity, n.drift_yaw_rate]) ** 2,
+        contact=np.diag([1e-3, 1e-3, n.contact_velocity, n.contact_velocity, n.contact_yaw_rate]) ** 2,
+        drift_share=n.drift_share,
+        surprise=n.surprise,
+    )
+    track = Track(np.zeros(5), np.eye(5), 0, np.zeros(5), False)
+    return pack(motion_model(motion or puck_motion()), model, track, *more)
 
 
 class PuckFilter:
     """Feeds on one observation per control step. `update` gives the estimate at the time of that observation."""
 
     def __init__(self, dt: float = 0.02, noise: Noise | None = None, motion: PuckMotion | None = None) -> None:
-        """Compile, and wait for the first observation.
-
-        Args:
-            dt: Time between observations, in [s].
-            noise: What the filter assumes.
-            motion: Constants of the puck's motion.
-        """
-        n, m = noise or Noise(), motion or puck_motion()
-        model = FilterModel(
-            dt=dt,
-            constants=m.constants,
-            observation=np.diag([n.position, n.position, n.velocity, n.velocity, n.yaw_rate]) ** 2,
-            drift=np.diag([1e-5, 1e-5, n.drift_velocity, n.drift_velocity, n.drift_yaw_rate]) ** 2,
-            contact=np.diag([1e-3, 1e-3, n.contact_velocity, n.contact_velocity, n.contact_yaw_rate]) ** 2,
-            drift_share=n.drift_share,
-            surprise=n.surprise,
-            e_spread=m.restitution_spread,
-            k_spread=m.slip_spread,
-        )
-        self._model, self._covariance = pack(model), model.observation
-        self.reset()
+        """Compile, and wait for the first observation. The arguments are those of `filter_record`."""
+        self._record = filter_record(dt, noise, motion)
         for k in range(3):  # compile before the game
             self.update(np.array([0.02 * k, 0.0, 0.0]), np.array([1.0, 0.0, 0.0]))
         self.reset()
 
     def reset(self) -> None:
         """Forget the puck."""
-        self._last: Array | None = None
-        self.estimate = PuckEstimate(np.zeros(5), np.eye(5), 0)
+        self._record["begun"] = False
 
     def update(self, position: Array, velocity: Array, contact: bool = False) -> PuckEstimate:
         """Take one observation.
@@ -145,49 +177,51 @@ class PuckFilter:
         Returns:
             The estimate now.
         """
-        return self.take(np.array([position[0], position[1], velocity[0], velocity[1], velocity[2]]), contact)
-
-    def take(self, seen: Array, contact: bool) -> PuckEstimate:
-        """The same for an observation laid out like the state. Shape (5,)."""
-        before = self.estimate
-        if self._last is None:
-            self.estimate = PuckEstimate(seen, self._covariance.copy(), 0)
-        else:
-            self.estimate = PuckEstimate(
-                *follow(before.state, before.covariance, before.lost, self._last, seen, contact, self._model)
-            )
-        self._last = seen
-        return self.estimate
+        seen = np.array([position[0], position[1], velocity[0], velocity[1], velocity[2]])
+        now = np.empty((6, 5))
+        lost = follow(self._record, seen, contact, now)
+        return PuckEstimate(now[0], now[1:], lost)
 
 
 @compiled
-def follow(
-    state: Array, covariance: Array, lost: int, last: Array, seen: Array, contact: bool, packed: NDArray[Any]
-) -> tuple[Array, Array, int]:
+def follow(record: NDArray[Any], seen: Array, contact: bool, now: Array) -> int:
     """One step of the filter: predict, and correct by the observation unless the track is lost.
 
     Args:
-        state, covariance, lost: The estimate before. Shapes (5,), (5, 5).
-        last, seen: The observation before, and this one. Shapes (5,).
+        record: From `filter_record`; its `Track` is brought up to date.
+        seen: The observation, laid out like the state. Shape (5,).
         contact: A mallet may be touching the puck.
-        packed: A record of a `FilterModel`.
+        now: Where the estimate is written, the state above the covariance: to give an array back costs more. Shape (6, 5).
 
     Returns:
-        The estimate now.
+        For how many steps the track has been lost.
     """
-    model = packed[0]
-    drift = model.contact.copy() if contact else model.drift.copy()
-    if not contact:
-        slipping = (model.drift_share * sqrt(state[2] * state[2] + state[3] * state[3])) ** 2
-        drift[2, 2] += slipping
-        drift[3, 3] += slipping
-    state, covariance = predict(
-        state, covariance, model.dt, model.constants, drift, model.e_spread, model.k_spread
-    )  # fmt: skip
-    lost = lost + 1 if _is_lost(seen, last, state) else 0
-    if lost == 0 or lost > LONGEST_LOSS:
-        state, covariance = correct(state, covariance, seen, model.observation, model.contact, model.surprise)
-    return state, covariance, lost
+    r = record[0]
+    lost = 0
+    if r.begun:
+        state, covariance = predict(r.state, r.covariance, r.dt, _drift(r.state, contact, r), r)
+        if _is_lost(seen, r.last, state):
+            lost = r.lost + 1
+        if lost == 0 or lost > LONGEST_LOSS:
+            state, covariance = correct(state, covariance, seen, r)
+    else:
+        state, covariance = seen.copy(), r.observation.copy()
+    now[0], now[1:] = state, covariance
+    r.state[:], r.covariance[:], r.last[:] = state, covariance, seen
+    r.lost, r.begun = lost, True
+    return lost
+
+
+@compiled
+def _drift(state: Array, contact: bool, model: FilterModel) -> Array:
+    """Covariance that a step adds. Shape (5, 5)."""
+    if contact:
+        return np.asarray(model.contact.copy())
+    drift = model.drift.copy()
+    slipping = (model.drift_share * sqrt(state[2] * state[2] + state[3] * state[3])) ** 2
+    drift[2, 2] += slipping
+    drift[3, 3] += slipping
+    return np.asarray(drift)
 
 
 @compiled
@@ -201,11 +235,10 @@ def _is_lost(seen: Array, last: Array, predicted: Array) -> bool:
 
 
 @compiled
-def predict(
-    state: Array, covariance: Array, duration: float, constants: Array, drift: Array, e_spread: float, k_spread: float
-) -> tuple[Array, Array]:
+def predict(state: Array, covariance: Array, duration: float, drift: Array, model: MotionModel) -> tuple[Array, Array]:
     """Carry mean and covariance over a duration; a bounce adds what is uncertain about it. Shapes (5,), (5, 5)."""
-    after, jacobian, bounces = transition(state, duration, constants)
+    e_spread, k_spread = model.e_spread, model.k_spread
+    after, jacobian, bounces = transition(state, duration, model.constants)
     spread = drift.copy()
     add_congruence(spread, jacobian, covariance)
     if bounces > 0:
@@ -213,22 +246,20 @@ def predict(
         spread[1, 1] += 0.002**2
         for i in range(2, 4):
             spread[i, i] += (e_spread * state[i]) ** 2 + (k_spread * state[i]) ** 2 + 0.02**2
-        spread[4, 4] += (2.0 * k_spread * (abs(state[2]) + abs(state[3])) / constants[7]) ** 2 + 1.0
+        spread[4, 4] += (2.0 * k_spread * (abs(state[2]) + abs(state[3])) / model.constants[7]) ** 2 + 1.0
     return after, spread
 
 
 @compiled
-def correct(
-    state: Array, covariance: Array, seen: Array, observation_covariance: Array, contact: Array, surprise: float
-) -> tuple[Array, Array]:
+def correct(state: Array, covariance: Array, seen: Array, model: FilterModel) -> tuple[Array, Array]:
     """The Kalman update; an observation that surprises first widens the prediction. Shapes (5,), (5, 5)."""
-    innovation, root = seen - state, covariance + observation_covariance
+    innovation, root = seen - state, covariance + model.observation
     factor(root)
-    if _distance(root, innovation) > surprise:
-        covariance = covariance + contact
+    if _distance(root, innovation) > model.surprise:
+        covariance = covariance + model.contact
         covariance[0, 0] += innovation[0] ** 2
         covariance[1, 1] += innovation[1] ** 2
-        root = covariance + observation_covariance
+        root = covariance + model.observation
         factor(root)
     after, gain, keep = state.copy(), covariance.copy(), np.eye(5)
     for i in range(5):  # the gain P S⁻¹, row by row; both are symmetric
@@ -239,7 +270,7 @@ def correct(
             keep[i, j] -= gain[i, j]
     spread = np.zeros((5, 5))  # Joseph's form: symmetric and positive whatever the rounding
     add_congruence(spread, keep, covariance)
-    add_congruence(spread, gain, observation_covariance)
+    add_congruence(spread, gain, model.observation)
     return after, spread
 
 

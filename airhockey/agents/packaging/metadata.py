@@ -6,14 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
-import yaml
 
 from airhockey.agents.registry import EVERY_ENVIRONMENT
 from airhockey.errors import ConfigurationError, unknown
+from airhockey.inputs import plain_yaml
 
 METADATA = "submission.yaml"
-MAX_YAML = 1 << 20
-"""No configuration is larger, in bytes; more is an attack on the parser."""
 _NAME = re.compile(r"[a-z0-9][a-z0-9_.-]{0,63}")
 _REQUIREMENT = re.compile(r"\s*([A-Za-z0-9][A-Za-z0-9._-]*)\s*(\[[A-Za-z0-9,._ -]*\])?\s*([<>=!~][^;@]*)?")
 
@@ -80,14 +78,7 @@ def read_yaml(file: Path) -> dict[str, Any]:
     Raises:
         ConfigurationError: The file is not YAML, too large, or not a mapping with text keys.
     """
-    try:
-        if file.stat().st_size > MAX_YAML:
-            raise ConfigurationError(f"{str(file)!r} is larger than {MAX_YAML} bytes: no configuration is")
-        content = yaml.load(file.read_text(encoding="utf-8"), _Loader)
-    except (yaml.YAMLError, UnicodeDecodeError, OSError, RecursionError, ValueError) as error:
-        if isinstance(error, ConfigurationError):
-            raise
-        raise ConfigurationError(f"cannot read {str(file)!r}: {' '.join(str(error).split())}") from error
+    content = plain_yaml.read_yaml(file)
     if content is None:
         return {}
     if not isinstance(content, dict) or not all(isinstance(key, str) for key in content):
@@ -116,15 +107,6 @@ def read_metadata(folder: Path) -> Metadata | None:
             metadata.check()
             return metadata
     return None
-
-
-class _Loader(yaml.SafeLoader):
-    """Safe, and without aliases: ten lines of them unfold to gigabytes."""
-
-    def compose_node(self, parent: Any, index: Any) -> Any:
-        if self.check_event(yaml.AliasEvent):
-            raise yaml.YAMLError("aliases (*name) are not allowed in a configuration")
-        return super().compose_node(parent, index)
 
 
 def _is_installed(requirement: str) -> bool:

@@ -40,11 +40,6 @@ _DISTRIBUTIONS = {
     "yaml": "pyyaml",
 }  # fmt: skip
 
-_GYM = (
-    "OpenAI Gym, which is no longer maintained and does not work with NumPy 2: import gymnasium instead (its spaces are the "
-    "same), or give the agent an interpreter of its own that has gym (--python PATH)"
-)
-
 
 def missing_module(checkout: Checkout, error: ModuleNotFoundError) -> AirHockeyError:
     """The error to raise instead of a `ModuleNotFoundError` of the submission's code."""
@@ -63,7 +58,10 @@ def missing_module(checkout: Checkout, error: ModuleNotFoundError) -> AirHockeyE
             f"root and the folder of {BUILDER}; import it by its whole name, as in {'.'.join(place.with_suffix('').parts)!r}"
         )
     if name == "gym":
-        return MissingDependencyError(f"{agent} imports 'gym', which is not installed: that is {_GYM}")
+        return MissingDependencyError(
+            f"{agent} imports 'gym', which is not installed: OpenAI Gym is given up, and does not work with NumPy 2; import "
+            "gymnasium instead, or give the agent an interpreter that has gym (--python PATH)"
+        )
     if name in _DISTRIBUTIONS:
         return MissingDependencyError(
             f"{agent} imports {name!r}, which is not installed: pip install {_DISTRIBUTIONS[name]}"

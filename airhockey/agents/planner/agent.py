@@ -10,7 +10,6 @@ from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.kalman import Noise, PuckEstimate
-from airhockey.agents.estimation.prediction import PuckPredictor
 from airhockey.agents.estimation.watch import TableWatch
 from airhockey.agents.planner.estimation.choice import Arms
 from airhockey.agents.planner.estimation.outcome import Outcome
@@ -21,7 +20,7 @@ from airhockey.agents.planner.skills.prepare import Prepare
 from airhockey.agents.planner.skills.ready import Ready
 from airhockey.agents.planner.skills.repel import Repel
 from airhockey.agents.planner.skills.smash import Smash
-from airhockey.agents.planner.tactics import choose
+from airhockey.agents.planner.tactics import Playing, choose
 from airhockey.agents.skill import Situation, Skill
 from airhockey.agents.table import to_table
 
@@ -61,7 +60,6 @@ class PlannerAgent(AgentBase):
         self._dt = float(env_info["dt"])
         self._controller = JointController(ArmKinematics(spec_of(env_info)), Workspace.of(env_info), self._dt)
         self._watch = TableWatch(env_info, NOISE)
-        self._predictor = PuckPredictor()
         self._task = str(env_info["env_name"]).rpartition("-")[2]
         self._smash, self._drop = Smash(env_info), DeadPuck(env_info)
         self._kinds = {kind.name: kind for kind in KINDS}
@@ -132,7 +130,7 @@ class PlannerAgent(AgentBase):
                     if step == 0:
                         self._controller.reset(np.array(self._controller.kinematics.spec.start))
                         self._smash.forget()
-                    now = Situation(estimate, self._predictor, self._controller, opponent, step, self._dt)
+                    now = self._situation(estimate, to_table(self._controller.tip_position()), opponent, step)
                     if step == 0:
                         skill.begin(now)
                     self._smash.scout(now)
@@ -144,10 +142,11 @@ class PlannerAgent(AgentBase):
         name = before.name if before is not None else "ready"
         finished = before is None or before.finished
         committed = before is not None and getattr(before, "committed", False)
+        playing = Playing(name, finished, committed)
         if name not in ("defend", "repel"):
-            self._answer = "defend" if self._task == "hit" else self._answers.draw()
+            self._answer = "defend" if self._task == "hit" else self._answers.draw() or "defend"
         stroke = self._stroke(situation)
-        skill = self._skills[choose(self._task, name, finished, committed, stroke, self._answer, situation)]
+        skill = self._skills[choose(self._task, playing, stroke, self._answer, situation)]
         if skill is not before:
             skill.begin(situation)
             self._skill = skill
@@ -179,5 +178,10 @@ class PlannerAgent(AgentBase):
         return "smash" if self._smash.scout(situation) is not None else None
 
     def _look(self, observation: Array) -> Situation:
-        puck, opponent = self._watch.see(observation, to_table(self._controller.tip_position()))
-        return Situation(puck, self._predictor, self._controller, opponent, self._step, self._dt)
+        return self._situation(*self._watch.see(observation, self._controller.tip_position()), self._step)
+
+    def _situation(self, puck: PuckEstimate, tip: Array, opponent: Array | None, step: int) -> Situation:
+        controller = self._controller
+        return Situation(
+            puck, tip, controller.tip_velocity(), opponent, self._dt, step, controller.move, controller.state.position
+        )

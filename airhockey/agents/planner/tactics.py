@@ -1,5 +1,7 @@
 """Which skill plays: the table of what the planner does when."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from airhockey.agents.skill import Situation
@@ -19,22 +21,33 @@ OURS = 0.0
 """x up to which the puck is ours to play, in [m]."""
 
 
-def choose(
-    task: str, now: str, finished: bool, committed: bool, stroke: str | None, answer: str, situation: Situation
-) -> str:
+class Playing(NamedTuple):
+    """The skill that acted last.
+
+    Attributes:
+        name: Of the skill.
+        finished: Whether it has nothing left to do.
+        committed: Whether its stroke is under way.
+    """
+
+    name: str
+    finished: bool
+    committed: bool
+
+
+def choose(task: str, playing: Playing, stroke: str | None, answer: str, situation: Situation) -> str:
     """The name of the skill for this step.
 
     Args:
         task: "hit", "defend", "prepare", or anything else for a whole game.
-        now: Name of the skill that acted last.
-        finished: Whether it has nothing left to do.
-        committed: Whether its stroke is under way.
+        playing: What is played.
         stroke: Name of the skill that has a stroke worth trying, if any.
         answer: Name of the skill for a puck that comes fast.
         situation: Now.
     """
     if task in ("defend", "prepare"):
         return task
+    now, finished, committed = playing
     if committed:
         return now
     puck, velocity = situation.puck.position, situation.puck.velocity
@@ -43,8 +56,9 @@ def choose(
         if now in ("defend", "repel") and not finished:
             return now
         return answer if situation.puck.speed > FAST else "defend"
-    apart = float(np.hypot(*(puck - situation.tip))) > CONTACT + APART
-    if stroke is not None and (apart or finished or now != "prepare"):
+    if stroke is not None and (
+        finished or now != "prepare" or float(np.hypot(*(puck - situation.tip))) > CONTACT + APART
+    ):
         return stroke
     if now == "prepare" and not finished and puck[0] < OURS:
         return "prepare"

@@ -9,15 +9,15 @@ from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.parameters import control_parameters
 from airhockey.agents.control.workspace import Workspace
-from airhockey.agents.estimation.prediction import PuckPredictor
+from airhockey.agents.estimation.prediction import puck_predictor
 from airhockey.agents.estimation.watch import TableWatch
-from airhockey.agents.table import to_robot, to_table
+from airhockey.agents.skill import Situation, Skill
 from airhockey.agents.thesis.defend import DefendPolicy
 from airhockey.agents.thesis.hit import HitPolicy
 from airhockey.agents.thesis.home import HomePolicy
 from airhockey.agents.thesis.opponent import OpponentWatch
 from airhockey.agents.thesis.parameters import ThesisParameters, thesis_parameters
-from airhockey.agents.thesis.policy import Policy, View
+from airhockey.agents.thesis.policy import Policy, RuleSkill
 from airhockey.agents.thesis.prepare import PreparePolicy
 from airhockey.agents.thesis.state_machine import StateMachine, Task
 from airhockey.agents.thesis.switcher import Switcher
@@ -61,12 +61,14 @@ class ThesisAgent(AgentBase):
         self._controller = JointController(ArmKinematics(spec), Workspace.of(env_info), self._dt, control)
         self._watch = TableWatch(env_info)
         self._opponent = OpponentWatch(p.opponent_rate, self._dt)
-        self._policies: dict[Task, Policy] = {
+        policies: dict[Task, Policy] = {
             Task.HOME: HomePolicy(p.home, p.hit.theta),
             Task.HIT: HitPolicy(p.hit, self._opponent),
-            Task.DEFEND: DefendPolicy(p.defend, PuckPredictor()),
+            Task.DEFEND: DefendPolicy(p.defend),
             Task.PREPARE: PreparePolicy(p.prepare),
         }
+        self._skills: dict[Task, Skill] = {task: RuleSkill(task, policy) for task, policy in policies.items()}
+        puck_predictor()  # compiles before the game
         tasks = TASKS.get(str(env_info["env_name"]).rpartition("-")[2], TASKS["tournament"])
         self._switcher = Switcher(p.switcher, tasks)
         self._early = p.switcher.leave_home_early
@@ -79,33 +81,33 @@ class ThesisAgent(AgentBase):
         self._opponent.reset()
         self._machine.reset()
         self._switcher.reset()
-        self._policies[Task.HOME].start()
-        self._finished = False
         self._first = True
 
     def draw_action(self, observation: Array) -> Array:
         """See `AgentBase.draw_action`."""
         if self._first:  # joints are observed once; afterwards the commands are the joints
             self._controller.reset(self.get_joint_pos(observation))
-            self._first = False
-        view = self._view(observation)
-        task = self._choose(view)
-        move = self._policies[task].step(view)
-        self._finished = move.finished
-        self.phase = f"{task} {self._policies[task].phase}"
-        return self._controller.step(to_robot(move.target), move.velocity)
+        now = self._look(observation)
+        skill = self._choose(now)
+        action = skill.act(now)
+        self.phase = f"{self._machine.state} {skill.phase}"
+        return action
 
-    def _view(self, observation: Array) -> View:
-        tip = to_table(self._controller.tip_position())
-        puck, opponent = self._watch.see(observation, tip)
+    def _look(self, observation: Array) -> Situation:
+        controller = self._controller
+        puck, tip, opponent = self._watch.see(observation, controller.tip_position())
         self._opponent.see(opponent)
-        return View(puck, tip, self._controller.tip_velocity(), opponent, self._dt)
+        return Situation(puck, tip, controller.tip_velocity(), opponent, self._dt, move=controller.move)
 
-    def _choose(self, view: View) -> Task:
+    def _choose(self, now: Situation) -> Skill:
+        """The skill for this step, begun if it is another than before or had finished."""
         before = self._machine.state
-        suggested = self._switcher.choose(view)
+        suggested = self._switcher.choose(now)
         at_home = before is Task.HOME and (self._early or suggested is Task.DEFEND)
-        task = self._machine.advance(suggested, self._finished or at_home)
-        if self._finished or task is not before:
-            self._policies[task].start()
-        return task
+        finished = not self._first and self._skills[before].finished
+        task = self._machine.advance(suggested, finished or at_home)
+        skill = self._skills[task]
+        if self._first or finished or task is not before:
+            skill.begin(now)
+        self._first = False
+        return skill

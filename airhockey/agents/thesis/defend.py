@@ -17,10 +17,11 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.estimation.prediction import Crossing, PuckPredictor
+from airhockey.agents.estimation.prediction import Crossing
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT
 from airhockey.agents.thesis.polar import limited_step, stoppable_step
-from airhockey.agents.thesis.policy import Move, View
+from airhockey.agents.thesis.policy import Move
 
 Array = NDArray[np.float64]
 
@@ -67,41 +68,41 @@ def deltas(theta: tuple[float, ...], speed: float, target: Array, tip: Array) ->
 class DefendPolicy:
     """Phases top and bottom, and cushion."""
 
-    def __init__(self, parameters: DefendParameters, predictor: PuckPredictor) -> None:
-        self._parameters, self._predictor = parameters, predictor
+    def __init__(self, parameters: DefendParameters) -> None:
+        self._parameters = parameters
         self.start()
 
     def start(self) -> None:
         """See `Policy.start`."""
         self.phase = "wait"
 
-    def step(self, view: View) -> Move:
+    def step(self, now: Situation) -> Move:
         """See `Policy.step`."""
-        p, puck = self._parameters, view.puck
-        behind = puck.position[0] < view.tip[0]
+        p, puck = self._parameters, now.puck
+        behind = puck.position[0] < now.tip[0]
         if puck.speed < p.done_speed or puck.velocity[0] > 0.0 or behind:
-            return Move(view.tip, finished=True)
-        crossing = self._predictor.at_line(puck, p.defend_line, p.horizon) if p.predict else None
+            return Move(now.tip, finished=True)
+        crossing = now.puck_at_line(p.defend_line, p.horizon) if p.predict else None
         if crossing is not None and crossing.state[2] < 0:
             remaining = crossing.time - CONTACT / max(hypot(*crossing.state[2:4]), 1e-3)
             if remaining < p.ramp:
-                return self._give_way(view, crossing, remaining)
-        from_top = bool(view.tip[1] > puck.position[1])
+                return self._give_way(now, crossing, remaining)
+        from_top = bool(now.tip[1] > puck.position[1])
         self.phase = "top" if from_top else "bottom"
         y_puck = float(puck.position[1]) if crossing is None else float(crossing.state[1])
         target = np.array([p.defend_line, y_target(p.theta, y_puck, puck.speed, from_top)])
         if crossing is not None:  # start in front of the line, to have gathered way on it
             target -= 0.5 * p.cushion * p.ramp * crossing.state[2:4]
-        step = view.tip + deltas(p.theta, puck.speed, target, view.tip)
-        longest = min(p.longest_step, stoppable_step(view.tip, target, p.acceleration, view.dt))
-        return Move(limited_step(view.tip, step, longest))
+        step = now.tip + deltas(p.theta, puck.speed, target, now.tip)
+        longest = min(p.longest_step, stoppable_step(now.tip, target, p.acceleration, now.dt))
+        return Move(limited_step(now.tip, step, longest))
 
-    def _give_way(self, view: View, crossing: Crossing, remaining: float) -> Move:
+    def _give_way(self, now: Situation, crossing: Crossing, remaining: float) -> Move:
         """Move with the puck: at the time of contact the end-effector is on the line and as fast as it should be."""
         p = self._parameters
         self.phase = "cushion"
         velocity = p.cushion * crossing.state[2:4]
-        left = max(remaining - view.dt, 0.0)  # at the end of the coming step
+        left = max(remaining - now.dt, 0.0)  # at the end of the coming step
         share = 1.0 - left / p.ramp
         way = velocity * (left - left**2 / (2.0 * p.ramp))  # still to go to the line
         return Move(crossing.state[:2] - way, velocity=share * velocity)

@@ -10,13 +10,13 @@ from typing import Any
 from airhockey.agents.atacom.controller import AtacomController
 from airhockey.agents.atacom.features import SLOW
 from airhockey.agents.atacom.learned import FOLDER, LearnedSkill, trained
-from airhockey.agents.atacom.skill import SKILLS, Situation
+from airhockey.agents.atacom.skill import SKILLS
 from airhockey.agents.base import Array
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import spec_of
-from airhockey.agents.table import CONTACT, to_robot
+from airhockey.agents.skill import Situation
+from airhockey.agents.table import CONTACT
 from airhockey.agents.thesis.agent import ThesisAgent
-from airhockey.agents.thesis.policy import Move, View
 from airhockey.agents.thesis.state_machine import Task
 
 _STILL = 0.1
@@ -25,53 +25,53 @@ _AWAY = 0.25
 """Nor does one so far in front of the mallet that goes away, in [m]."""
 
 
-class SkillPolicy:
-    """A learned skill among the thesis's policies: it moves the joints itself, and says so by `command`.
+class TaskSkill:
+    """A learned skill among the thesis's: it goes on from the rule-based player's command, and gives it back.
 
     Attributes:
-        phase: See `Policy`.
-        command: The joint command of the last step. Shape (2, n).
+        name, phase, finished: See `Skill`.
     """
 
     def __init__(self, task: Task, learned: LearnedSkill, commands: JointController) -> None:
-        """Make a policy of a skill.
+        """Make a task of a skill.
 
         Args:
             task: Defend or home.
             learned: Plays it.
             commands: The rule-based player's controller: every command starts from its state and ends there.
         """
-        self._task, self._learned, self._commands = task, learned, commands
-        self.start()
+        self.name, self._learned, self._commands = task, learned, commands
+        self.phase, self.finished = "learned", False
 
-    def start(self) -> None:
-        """See `Policy.start`."""
-        self._learned.start()
-        self.phase = "learned"
+    def begin(self, now: Situation) -> None:
+        """See `Skill.begin`."""
+        self._learned.begin(now)
+        self.phase, self.finished = "learned", False
 
-    def step(self, view: View) -> Move:
-        """See `Policy.step`."""
-        state, atacom = self._commands.state, self._learned.controller
-        atacom.reset(state.position, state.velocity)
-        if self._learned.resting and self._comes_again(view):
-            self._learned.start()
-        self.command = self._learned.step(Situation(view.puck.state, view.tip, view.tip_velocity))
-        self._commands.reset(*self.command)
-        self.phase = "rest" if self._learned.resting else "learned"
-        return Move(view.tip, finished=self._learned.resting and self._over(view))
+    def act(self, now: Situation) -> Array:
+        """See `Skill.act`."""
+        state, learned = self._commands.state, self._learned
+        learned.controller.reset(state.position, state.velocity)
+        if learned.finished and self._comes_again(now):
+            learned.begin(now)
+        command = learned.act(now)
+        self._commands.reset(*command)
+        self.phase = learned.phase
+        self.finished = learned.finished and self._over(now)
+        return command
 
-    def _comes_again(self, view: View) -> bool:
+    def _comes_again(self, now: Situation) -> bool:
         """Whether a puck that was defended has bounced off something, and is on its way to the own goal once more."""
-        coming = view.puck.velocity[0] < -SLOW and view.puck.position[0] - view.tip[0] > CONTACT
-        return self._task is Task.DEFEND and bool(coming)
+        coming = now.puck.velocity[0] < -SLOW and now.puck.position[0] - now.tip[0] > CONTACT
+        return self.name is Task.DEFEND and bool(coming)
 
-    def _over(self, view: View) -> bool:
+    def _over(self, now: Situation) -> bool:
         """Whether the next task may begin: after a defence only when the puck is out of the way."""
-        if self._task is Task.HOME:
+        if self.name is Task.HOME:
             return True
-        ahead = float(view.puck.position[0] - view.tip[0])
-        leaving = view.puck.velocity[0] > 0.0 and ahead > _AWAY
-        return view.puck.speed < _STILL or leaving or ahead < 0.0
+        ahead = float(now.puck.position[0] - now.tip[0])
+        leaving = now.puck.velocity[0] > 0.0 and ahead > _AWAY
+        return now.puck.speed < _STILL or leaving or ahead < 0.0
 
 
 class FinalThesisAgent(ThesisAgent):
@@ -104,21 +104,5 @@ class FinalThesisAgent(ThesisAgent):
             if source is None and not (FOLDER / f"{task}_{robot}.npz").exists():
                 continue
             learned = LearnedSkill(SKILLS[task], trained(task, robot, source), atacom)
-            self._policies[task] = SkillPolicy(task, learned, self._controller)
+            self._skills[task] = TaskSkill(task, learned, self._controller)
         self.reset()
-
-    def draw_action(self, observation: Array) -> Array:
-        """See `AgentBase.draw_action`."""
-        if self._first:
-            self._controller.reset(self.get_joint_pos(observation))
-            self._first = False
-        view = self._view(observation)
-        policy = self._policies[self._choose(view)]
-        move = policy.step(view)
-        self._finished = move.finished
-        self.phase = f"{self._machine.state} {policy.phase}"
-        return (
-            policy.command
-            if isinstance(policy, SkillPolicy)
-            else self._controller.step(to_robot(move.target), move.velocity)
-        )

@@ -12,21 +12,32 @@ counts towards 180°: in the lower half β grows by it, in the upper half it shr
 """
 
 from dataclasses import dataclass, field
-from math import asin, cos, degrees, hypot, radians, sin, sqrt
+from math import asin, cos, degrees, hypot, inf, radians, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, HALF_LENGTH, HALF_WIDTH, OPPONENT_GOAL
 from airhockey.agents.thesis.opponent import OpponentWatch
-from airhockey.agents.thesis.polar import Polar, cartesian, direction_angle, limited_step, polar, stoppable_step
-from airhockey.agents.thesis.policy import Move, View, enough_space
+from airhockey.agents.thesis.polar import (
+    Polar,
+    cartesian,
+    direction_angle,
+    distance,
+    limited_step,
+    polar,
+    stoppable_step,
+)
+from airhockey.agents.thesis.policy import Move, enough_space
 from airhockey.envs.specs import MALLET, PUCK
 
 Array = NDArray[np.float64]
 
 _DECAY = PUCK.slide_damping / PUCK.mass
 """Share of its velocity that a sliding puck loses per second, in [1/s]."""
+_PASSING = np.array([-1.5, -0.75, 0.0, 0.75]) * CONTACT
+"""Where a puck that goes by is looked at, from the opponent's mallet along its way, in [m]."""
 _EDGE = 0.012
 """Room that is left between mallet and rim, in [m]."""
 
@@ -127,34 +138,35 @@ class HitPolicy:
         self.phase, self._t_phase = phase, 0
         self._ds = self._parameters.theta[2]
 
-    def step(self, view: View) -> Move:
+    def step(self, now: Situation) -> Move:
         """See `Policy.step`."""
         self._t_phase += 1
         if self.phase == "slow-down":
-            return self._slow_down(view)
+            return self._slow_down(now)
         if self.phase == "acceleration":
-            return self._accelerate(view)
-        p, puck = self._parameters, view.puck
+            return self._accelerate(now)
+        p, puck = self._parameters, now.puck
         if not enough_space(puck.position, p.side_tolerance, p.end_tolerance) or puck.position[0] > 0.0:
-            return Move(view.tip, finished=True)
+            return Move(now.tip, finished=True)
         too_fast = puck.speed > 2.0 * p.wait_speed
         if self.phase == "wait":
             if puck.speed < p.wait_speed:
                 self._enter("adjustment")
             elif not p.follow:
-                return Move(view.tip, finished=too_fast)
-        move = self._adjust(view)
+                return Move(now.tip, finished=too_fast)
+        move = self._adjust(now)
         return Move(move.target, finished=too_fast)
 
-    def _aim(self, view: View) -> tuple[Array, float]:
+    def _aim(self, now: Situation) -> tuple[Array, float]:
         """Where the puck will be when it is hit, (2,), and γ, corrected for the puck's own motion across the line."""
         p = self._parameters
-        reach = hypot(*(view.puck.position - view.tip)) - CONTACT
+        reach = distance(now.puck.position, now.tip) - CONTACT
         share = min(max(reach / (p.stand_off - CONTACT), 0.0), 1.0)
         remaining = p.strike_time * (1.0 - sqrt(1.0 - share))  # of a motion at constant acceleration
-        puck = view.puck.position + remaining * view.puck.velocity
+        puck = now.puck.position + remaining * now.puck.velocity
         gamma = radians(direction_angle(puck, OPPONENT_GOAL))
-        across = float(view.puck.velocity[1]) * cos(gamma) - float(view.puck.velocity[0]) * sin(gamma)
+        forward, sideways = now.puck.velocity.tolist()
+        across = sideways * cos(gamma) - forward * sin(gamma)
         return puck, degrees(gamma - asin(min(max(p.across * across / self._speed(puck), -0.5), 0.5)))
 
     def _speed(self, puck: Array) -> float:
@@ -162,73 +174,79 @@ class HitPolicy:
         base, by_x, by_y = self._parameters.leaving_speed
         return max(base + by_x * float(puck[0]) + by_y * abs(float(puck[1])), 0.5)
 
-    def _adjust(self, view: View) -> Move:
+    def _adjust(self, now: Situation) -> Move:
         """Behind the puck, and there until the opponent leaves a gap."""
         p = self._parameters
-        puck, gamma = self._aim(view)
-        here, side = polar(puck, view.tip, gamma), _side(puck)
+        puck, gamma = self._aim(now)
+        here, side = polar(puck, now.tip, gamma), _side(puck)
         off = correction(here.beta, puck[1])
-        turn = d_beta(p.theta, "adjustment", self._t_phase, view.dt, off)
+        turn = d_beta(p.theta, "adjustment", self._t_phase, now.dt, off)
         turn = min(max(turn, -abs(off)), abs(off))
-        self._ds = d_s(p.theta, "adjustment", self._t_phase, view.dt, self._ds, here.radius)
+        self._ds = d_s(p.theta, "adjustment", self._t_phase, now.dt, self._ds, here.radius)
         stand_off = min(p.stand_off, room_behind(puck, gamma))
         radius = max(here.radius - self._ds, stand_off)
         target = cartesian(puck, Polar(here.beta + side * turn, radius), gamma)
         run_up = stand_off + p.run_up - p.stand_off
         ready = self.phase == "adjustment" and abs(off) < p.aligned and here.radius < run_up
-        patience = p.patience if self._opponent.repeats else p.hesitation
-        if ready and (self._t_phase > patience or self._gap(view)):
+        if ready and (self._out_of_patience() or self._gap(now)):
             self._enter("acceleration")
         end = cartesian(puck, Polar(180.0, stand_off), gamma)
-        longest = min(p.longest_step, stoppable_step(view.tip, end, p.acceleration, view.dt))
-        return Move(limited_step(view.tip, target, longest))
+        longest = min(p.longest_step, stoppable_step(now.tip, end, p.acceleration, now.dt))
+        return Move(limited_step(now.tip, target, longest))
 
-    def _gap(self, view: View) -> bool:
+    def _out_of_patience(self) -> bool:
+        p = self._parameters
+        return self._t_phase > (p.patience if self._opponent.repeats else p.hesitation)
+
+    def _gap(self, now: Situation) -> bool:
         """Whether the opponent's mallet will be out of the way while the puck goes by."""
-        p, puck = self._parameters, view.puck.position
+        p, puck = self._parameters, now.puck.position
         mallet = self._opponent.predict(0.0)
         if p.gap <= 0.0 or mallet is None:
             return True
         if not self._opponent.ready:
             return False
-        way = (OPPONENT_GOAL - puck) / hypot(*(OPPONENT_GOAL - puck))
+        way = (OPPONENT_GOAL - puck) / distance(OPPONENT_GOAL, puck)
         across, speed = np.array([-way[1], way[0]]), self._speed(puck)
-        passing = float(way @ (mallet - puck)) + np.array([-1.5, -0.75, 0.0, 0.75]) * CONTACT
-        times = p.strike_time - np.log(1.0 - np.clip(_DECAY * passing / speed, 0.0, 0.95)) / _DECAY
-        return all(abs(across @ (self._opponent.at(float(time)) - puck)) > p.gap for time in times)
+        passing = float(way @ (mallet - puck)) + _PASSING
+        slowed = np.minimum(np.maximum(_DECAY * passing / speed, 0.0), 0.95)
+        times = p.strike_time - np.log(1.0 - slowed) / _DECAY
+        return all(abs(across @ (mallet - puck)) > p.gap for mallet in self._opponent.along(times))
 
-    def _accelerate(self, view: View) -> Move:
+    def _accelerate(self, now: Situation) -> Move:
         """Through the puck, along the line to the goal."""
         p = self._parameters
-        puck, gamma = self._aim(view)
-        here = polar(puck, view.tip, gamma)
-        if abs(here.beta - 180.0) > 60.0 or view.puck.velocity[0] > p.struck_speed or self._t_phase > p.longest_strike:
+        puck, gamma = self._aim(now)
+        here = polar(puck, now.tip, gamma)
+        if abs(here.beta - 180.0) > 60.0 or now.puck.velocity[0] > p.struck_speed or self._t_phase > p.longest_strike:
             self._enter("slow-down")
-            return self._slow_down(view)
-        turn = d_beta(p.theta, "acceleration", self._t_phase, view.dt, correction(here.beta, puck[1]))
-        self._ds = d_s(p.theta, "acceleration", self._t_phase, view.dt, self._ds, here.radius)
+            return self._slow_down(now)
+        turn = d_beta(p.theta, "acceleration", self._t_phase, now.dt, correction(here.beta, puck[1]))
+        self._ds = d_s(p.theta, "acceleration", self._t_phase, now.dt, self._ds, here.radius)
         self._ds = min(self._ds, p.fastest_step)
         target = cartesian(puck, Polar(here.beta + _side(puck) * turn, here.radius - self._ds), gamma)
         return Move(target)
 
-    def _slow_down(self, view: View) -> Move:
+    def _slow_down(self, now: Situation) -> Move:
         """Brake on the way, on the curve that dβ gives."""
         p = self._parameters
-        puck, gamma = self._aim(view)
-        off = correction(polar(puck, view.tip, gamma).beta, puck[1])
-        turn = radians(_side(puck) * d_beta(p.theta, "slow-down", self._t_phase, view.dt, off))
+        puck, gamma = self._aim(now)
+        off = correction(polar(puck, now.tip, gamma).beta, puck[1])
+        turn = radians(_side(puck) * d_beta(p.theta, "slow-down", self._t_phase, now.dt, off))
         rotation = np.array([[cos(turn), -sin(turn)], [sin(turn), cos(turn)]])
-        velocity = p.slow_down * rotation @ view.tip_velocity
-        target = view.tip + 0.5 * view.dt * (velocity + view.tip_velocity)
-        return Move(target, hypot(*view.tip_velocity) < p.rest_speed, velocity)
+        velocity = p.slow_down * rotation @ now.tip_velocity
+        target = now.tip + 0.5 * now.dt * (velocity + now.tip_velocity)
+        return Move(target, hypot(*now.tip_velocity) < p.rest_speed, velocity)
 
 
 def room_behind(puck: Array, gamma: float) -> float:
     """Largest distance at which the mallet can stand behind the puck on the line to the goal, in [m]."""
-    direction = np.array([cos(radians(gamma)), sin(radians(gamma))])
-    edge = np.array([HALF_LENGTH, HALF_WIDTH]) - MALLET.radius - _EDGE
-    reach = (edge + np.sign(direction) * puck) / np.maximum(np.abs(direction), 1e-9)
-    return max(float(reach.min()), CONTACT)
+    turned, (x, y) = radians(gamma), puck.tolist()
+    reach = inf
+    for along, half, place in ((cos(turned), HALF_LENGTH, x), (sin(turned), HALF_WIDTH, y)):
+        room = half - MALLET.radius - _EDGE + (place if along > 0.0 else -place)
+        reach = min(reach, room / max(abs(along), 1e-9))
+    return max(reach, CONTACT)
 
 
 def _side(puck: Array) -> float:

@@ -15,9 +15,10 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, HOME
 from airhockey.agents.thesis.polar import Polar, cartesian, limited_step, polar
-from airhockey.agents.thesis.policy import Move, View
+from airhockey.agents.thesis.policy import Move
 
 Array = NDArray[np.float64]
 
@@ -60,27 +61,27 @@ class HomePolicy:
         """See `Policy.start`."""
         self.phase = "return"
 
-    def step(self, view: View) -> Move:
+    def step(self, now: Situation) -> Move:
         """See `Policy.step`. Home is finished once it is reached, and stays so."""
         p = self._parameters
-        here = polar(self._target, view.tip)
+        here = polar(self._target, now.tip)
         if here.radius < p.arrived:
             self.phase = "arrived"
-            return Move(self._keep_clear(view, limited_step(view.tip, self._target, 0.1 * here.radius)), finished=True)
+            return Move(self._keep_clear(now, limited_step(now.tip, self._target, 0.1 * here.radius)), finished=True)
         self.phase = "return"
-        below = float(self._target[1] - view.tip[1])
-        turn = d_beta(self._theta, view.dt, correction(here.beta, below))
+        below = float(self._target[1] - now.tip[1])
+        turn = d_beta(self._theta, now.dt, correction(here.beta, below))
         beta = here.beta + turn if below >= 0 else here.beta - turn
         target = cartesian(self._target, Polar(beta, max(here.radius - p.step_size, 0.0)))
-        return Move(limited_step(view.tip, self._keep_clear(view, target), p.longest_step))
+        return Move(limited_step(now.tip, self._keep_clear(now, target), p.longest_step))
 
-    def _keep_clear(self, view: View, target: Array) -> Array:
+    def _keep_clear(self, now: Situation, target: Array) -> Array:
         """The target, pushed out of the circle round the puck that the mallet's centre must not enter. Shape (2,)."""
         near = CONTACT + self._parameters.clearance
-        ahead = view.puck.position + view.dt * view.puck.velocity
+        ahead = now.puck.position + now.dt * now.puck.velocity
         away = target - ahead
-        distance = hypot(*away)
+        distance = hypot(*away.tolist())
         if distance >= near:
             return target
-        outwards = away if distance > 1e-6 else view.tip - ahead
+        outwards = away if distance > 1e-6 else now.tip - ahead
         return np.asarray(ahead + outwards * (near / max(hypot(*outwards), 1e-6)))

@@ -4,8 +4,8 @@ Angles are degrees in [0, 360), counter-clockwise, and 0 along a reference direc
 the hit (γ), the table's x axis in prepare and home.
 """
 
-from dataclasses import dataclass
 from math import atan2, cos, degrees, hypot, radians, sin, sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Polar:
+class Polar(NamedTuple):
     """A point around a centre.
 
     Attributes:
@@ -33,19 +32,20 @@ def polar(center: Array, point: Array, gamma: float = 0.0) -> Polar:
         center, point: In the same frame, in [m]. Shapes (2,), (2,).
         gamma: γ, the reference direction's own angle from the x axis, in [°].
     """
-    x, y = point - center
+    x, y = (point - center).tolist()
     return Polar((degrees(atan2(y, x)) - gamma) % 360.0, hypot(x, y))
 
 
 def cartesian(center: Array, place: Polar, gamma: float = 0.0) -> Array:
     """The point that `polar` describes. Shape (2,)."""
     angle = radians(place.beta + gamma)
-    return np.asarray(center + place.radius * np.array([cos(angle), sin(angle)]))
+    x, y = center.tolist()
+    return np.array([x + place.radius * cos(angle), y + place.radius * sin(angle)])
 
 
 def direction_angle(origin: Array, target: Array) -> float:
     """γ: the angle of the line from one point to another from the x axis, in [°], in (−180, 180]."""
-    x, y = target - origin
+    x, y = (target - origin).tolist()
     return degrees(atan2(y, x))
 
 
@@ -57,10 +57,15 @@ def wrapped(angle: float) -> float:
 def limited_step(start: Array, target: Array, longest: float) -> Array:
     """The target, or the point on the way to it that is as far as a step may be. Shape (2,)."""
     way = target - start
-    length = hypot(*way)
+    length = hypot(*way.tolist())
     return target if length <= longest else np.asarray(start + way * (longest / length))
+
+
+def distance(here: Array, there: Array) -> float:
+    """Between two points, in [m]. Shapes (2,), (2,)."""
+    return hypot(*(here - there).tolist())
 
 
 def stoppable_step(start: Array, target: Array, acceleration: float, dt: float) -> float:
     """The longest step, in [m], after which a motion can still stop at its target. Shapes (2,), (2,)."""
-    return sqrt(2.0 * acceleration * hypot(*(target - start))) * dt
+    return sqrt(2.0 * acceleration * distance(target, start)) * dt

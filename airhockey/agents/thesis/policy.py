@@ -1,12 +1,11 @@
-"""What the thesis's policies share: what they see, what they answer, and the room a hit needs."""
+"""What the thesis's policies share: what they answer, how that becomes a skill, and the room a hit needs."""
 
-from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.estimation.kalman import PuckEstimate
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import HALF_LENGTH, HALF_WIDTH
 from airhockey.envs.specs import MALLET, PUCK
 
@@ -16,27 +15,7 @@ TOLERANCE = PUCK.radius + 2.0 * MALLET.radius
 """Room that a mallet needs behind the puck (4.10), in [m]."""
 
 
-@dataclass(frozen=True)
-class View:
-    """What a policy decides on, in the table frame.
-
-    Attributes:
-        puck: Filtered.
-        tip: Commanded position of the end-effector, in [m]. Shape (2,).
-        tip_velocity: Commanded velocity, in [m]/[s]. Shape (2,).
-        opponent: The opponent's end-effector, or None where there is none. Shape (2,).
-        dt: Length of a control step, in [s].
-    """
-
-    puck: PuckEstimate
-    tip: Array
-    tip_velocity: Array
-    opponent: Array | None
-    dt: float
-
-
-@dataclass(frozen=True)
-class Move:
+class Move(NamedTuple):
     """What a policy wants of the end-effector.
 
     Attributes:
@@ -62,8 +41,37 @@ class Policy(Protocol):
     def start(self) -> None:
         """The task begins: timers to zero."""
 
-    def step(self, view: View) -> Move:
+    def step(self, now: Situation) -> Move:
         """The next move."""
+
+
+class RuleSkill:
+    """A policy as a `Skill`: its moves become joint commands.
+
+    Attributes:
+        name: Of the task.
+        finished: Whether its last move was the task's last.
+    """
+
+    def __init__(self, name: str, policy: Policy) -> None:
+        self.name, self.finished = name, False
+        self._policy = policy
+
+    @property
+    def phase(self) -> str:
+        """See `Policy`."""
+        return self._policy.phase
+
+    def begin(self, now: Situation) -> None:
+        """See `Skill.begin`."""
+        self._policy.start()
+        self.finished = False
+
+    def act(self, now: Situation) -> Array:
+        """See `Skill.act`."""
+        move = self._policy.step(now)
+        self.finished = move.finished
+        return now.move(move.target, move.velocity)
 
 
 def enough_space(puck_position: Array, side_tolerance: float = 0.0, end_tolerance: float | None = None) -> bool:
@@ -75,6 +83,5 @@ def enough_space(puck_position: Array, side_tolerance: float = 0.0, end_toleranc
         end_tolerance: The same at the short borders, where it differs: room to take a run-up.
     """
     end = side_tolerance if end_tolerance is None else end_tolerance
-    x_tol = HALF_LENGTH - end - abs(puck_position[0])
-    y_tol = HALF_WIDTH - side_tolerance - abs(puck_position[1])
-    return bool(x_tol >= TOLERANCE and y_tol >= TOLERANCE)
+    x, y = puck_position.tolist()
+    return bool(HALF_LENGTH - end - abs(x) >= TOLERANCE and HALF_WIDTH - side_tolerance - abs(y) >= TOLERANCE)

@@ -18,10 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.estimation.kalman import PuckEstimate
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, HALF_LENGTH, HOME
 from airhockey.agents.thesis.bank_shot import bank_aim
 from airhockey.agents.thesis.polar import Polar, cartesian, limited_step, polar, wrapped
-from airhockey.agents.thesis.policy import TOLERANCE, Move, View, enough_space
+from airhockey.agents.thesis.policy import TOLERANCE, Move, enough_space
 from airhockey.envs.specs import PUCK
 
 Array = NDArray[np.float64]
@@ -109,18 +110,18 @@ class PreparePolicy:
     def _enter(self, phase: str) -> None:
         self.phase, self._t_phase = phase, 0
 
-    def step(self, view: View) -> Move:
+    def step(self, now: Situation) -> Move:
         """See `Policy.step`."""
         p = self._parameters
         self._t_phase += 1
-        if self.phase != "retreat" and enough_space(view.puck.position, p.side_tolerance, p.end_tolerance):
-            return Move(view.tip, finished=True)
+        if self.phase != "retreat" and enough_space(now.puck.position, p.side_tolerance, p.end_tolerance):
+            return Move(now.tip, finished=True)
         if self.phase == "wait":
-            if view.puck.speed >= p.wait_speed or self._leaves(view.puck):
-                return Move(self._stand_aside(view), finished=view.puck.speed >= 2.0 * p.wait_speed)
+            if now.puck.speed >= p.wait_speed or self._leaves(now.puck):
+                return Move(self._stand_aside(now), finished=now.puck.speed >= 2.0 * p.wait_speed)
             self._enter("adjustment")
         moves = {"adjustment": self._adjust, "acceleration": self._push, "retreat": self._retreat}
-        return moves[self.phase](view)
+        return moves[self.phase](now)
 
     def _leaves(self, puck: PuckEstimate) -> bool:
         """Whether the puck is leaving the short rim by itself, where another push would only hold it up."""
@@ -128,59 +129,59 @@ class PreparePolicy:
         rest = puck.position + puck.velocity * (PUCK.mass / PUCK.slide_damping)
         return bool(puck.position[0] < -near < rest[0] and puck.speed > _STILL)
 
-    def _stand_aside(self, view: View) -> Array:
+    def _stand_aside(self, now: Situation) -> Array:
         """Where to wait: here, or further from the puck's way to its rest. Shape (2,)."""
-        p, puck = self._parameters, view.puck
+        p, puck = self._parameters, now.puck
         if puck.speed < _STILL:
-            return view.tip
+            return now.tip
         rest = puck.velocity * (PUCK.mass / PUCK.slide_damping)
-        share = float(np.clip((view.tip - puck.position) @ rest / (rest @ rest), 0.0, 1.0))
-        away = view.tip - (puck.position + share * rest)
+        share = float(np.clip((now.tip - puck.position) @ rest / (rest @ rest), 0.0, 1.0))
+        away = now.tip - (puck.position + share * rest)
         if np.hypot(*away) > CONTACT + p.clearance:
-            return view.tip
+            return now.tip
         across = np.array([-rest[1], rest[0]]) / np.hypot(*rest)
-        inwards = across if across @ (HOME - view.tip) > 0 else -across
-        return np.asarray(view.tip + 0.5 * p.longest_step * inwards)
+        inwards = across if across @ (HOME - now.tip) > 0 else -across
+        return np.asarray(now.tip + 0.5 * p.longest_step * inwards)
 
     def _aim(self, puck: Array) -> float:
         p = self._parameters
         return bank_aim(puck, (p.near_x, p.far_x), p.largest_tilt, p.end_tolerance) if p.bank_shot else 90.0
 
-    def _adjust(self, view: View) -> Move:
+    def _adjust(self, now: Situation) -> Move:
         """Round the puck to the aim, then up to the stand-off."""
-        p, puck = self._parameters, view.puck.position
-        here = polar(puck, view.tip)
+        p, puck = self._parameters, now.puck.position
+        here = polar(puck, now.tip)
         off = correction(here.beta, puck[1], self._aim(puck))
         # θ0 t_phase grows without bound: it must not carry the end-effector past the aim, nor away from it.
         turn = float(np.copysign(min(d_beta(p.theta, "adjustment", self._t_phase, abs(off)), abs(off)), off))
         radius = max(here.radius - d_s(p.theta, "adjustment", p.approach), p.stand_off)
         target = cartesian(puck, Polar(here.beta - _side(puck) * turn, radius))
-        if view.puck.speed >= 2.0 * p.wait_speed:
-            return Move(view.tip, finished=True)
+        if now.puck.speed >= 2.0 * p.wait_speed:
+            return Move(now.tip, finished=True)
         arrived = abs(off) < p.aligned and here.radius < p.stand_off + 0.01
         if arrived or self._t_phase > p.longest_adjustment:
             self._enter("acceleration")
-        return Move(limited_step(view.tip, target, p.longest_step))
+        return Move(limited_step(now.tip, target, p.longest_step))
 
-    def _push(self, view: View) -> Move:
+    def _push(self, now: Situation) -> Move:
         """Straight at the puck until it is touched."""
-        p, puck = self._parameters, view.puck.position
-        here = polar(puck, view.tip)
+        p, puck = self._parameters, now.puck.position
+        here = polar(puck, now.tip)
         off = correction(here.beta, puck[1], self._aim(puck))
         turn = d_beta(p.theta, "acceleration", self._t_phase, off)
         radius = here.radius - d_s(p.theta, "acceleration")
         target = cartesian(puck, Polar(here.beta - _side(puck) * turn, radius))
-        touched = here.radius < CONTACT + p.touch or view.puck.speed > p.touch_speed
+        touched = here.radius < CONTACT + p.touch or now.puck.speed > p.touch_speed
         if touched or self._t_phase > p.longest_push:
             self._enter("retreat")
-        return Move(limited_step(view.tip, target, p.theta[2]))
+        return Move(limited_step(now.tip, target, p.theta[2]))
 
-    def _retreat(self, view: View) -> Move:
+    def _retreat(self, now: Situation) -> Move:
         """Away from the puck, faster than it follows, so that it is not caught between mallet and rim."""
-        p, puck = self._parameters, view.puck.position
-        here = polar(puck, view.tip)
+        p, puck = self._parameters, now.puck.position
+        here = polar(puck, now.tip)
         target = cartesian(puck, Polar(here.beta, here.radius + p.longest_step))
-        return Move(limited_step(view.tip, target, p.longest_step), finished=here.radius > p.retreat)
+        return Move(limited_step(now.tip, target, p.longest_step), finished=here.radius > p.retreat)
 
 
 def _side(puck: Array) -> float:

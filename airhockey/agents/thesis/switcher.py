@@ -9,7 +9,8 @@ puck that has come to rest is decided once (`RestingPuck`).
 from dataclasses import dataclass
 
 from airhockey.agents.estimation.motion import advance, puck_motion
-from airhockey.agents.thesis.policy import View, enough_space
+from airhockey.agents.skill import Situation
+from airhockey.agents.thesis.policy import enough_space
 from airhockey.agents.thesis.resting import RestingPuck
 from airhockey.agents.thesis.state_machine import Task
 
@@ -48,14 +49,14 @@ class Switcher:
         """A serve: forget the puck."""
         self._resting.reset()
 
-    def choose(self, view: View) -> Task:
+    def choose(self, now: Situation) -> Task:
         """The task that the situation asks for; home where it is not among those that may be played."""
-        self._resting.see(view.puck)
-        task = self._wanted(view)
+        self._resting.see(now.puck)
+        task = self._wanted(now)
         return task if task in self._tasks else Task.HOME
 
-    def _wanted(self, view: View) -> Task:
-        p, puck = self._parameters, view.puck
+    def _wanted(self, now: Situation) -> Task:
+        p, puck = self._parameters, now.puck
         if puck.speed > p.defend_speed and puck.velocity[0] < -p.approach_speed:
             return Task.DEFEND
         if puck.position[0] >= p.reach_x:

@@ -20,6 +20,11 @@ def pack(*parts: NamedTuple) -> NDArray[Any]:
     return record
 
 
+def bytes_from(record: NDArray[Any], kind: type[Any]) -> NDArray[np.uint8]:
+    """The record's bytes, from where this part begins to the end; a view."""
+    return record.view(np.uint8)[int(record[kind._fields[0]].__array_interface__["data"][0] - record.ctypes.data) :]
+
+
 def view(record: NDArray[Any], kind: type[Any]) -> Any:
     """The fields of one part again, as a named tuple of views into the record (scalars are copied)."""
     fields = {name: record[name][0] for name in kind._fields}

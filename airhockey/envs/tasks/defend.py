@@ -1,14 +1,14 @@
 r"""Defend: stop a puck that comes from the opponent's half, and keep it on the own one.
 
-Environments `3dof-defend` and `7dof-defend`, one robot each. World coordinates: origin in the table's centre, x towards the
-opponent's goal. The edition's file has the numbers.
+Environments `3dof-defend` and `7dof-defend`, and `defend` in the edition of 2025; one robot each. World coordinates: origin in
+the table's centre, x towards the opponent's goal. The edition's file has the numbers.
 
-| start | range | unit |
-|---|---|---|
-| puck x, y | 0.29 … 0.65, ±0.4 | m |
-| speed; direction, from -x | 1 … 3; ±0.5 | m/s; rad |
-| yaw rate | ±10 | rad/s |
-| joints | the robot's start, at rest | rad |
+| start | range | in 2025 | unit |
+|---|---|---|---|
+| puck x, y | 0.29 … 0.65, ±0.4 | 0.4 … 0.75, ±0.4 | m |
+| speed; direction, from -x | 1 … 3; ±0.5 | 1 … 5; ±0.75 | m/s; rad |
+| yaw rate | ±10 | ±10 | rad/s |
+| joints | the robot's start, at rest | the same | rad |
 
 | ends | when |
 |---|---|

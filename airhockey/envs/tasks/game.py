@@ -1,7 +1,7 @@
 r"""Game: two players, points and faults, serve after serve.
 
-Environment `tournament`. World coordinates: origin in the table's centre, player 1 ("home") plays towards +x and player 2
-("away") towards -x. The edition's file has the numbers.
+Environment `tournament`, in every edition. World coordinates: origin in the table's centre, player 1 ("home") plays towards +x
+and player 2 ("away") towards -x. The edition's file has the numbers.
 
 | start of a serve | range | unit |
 |---|---|---|

@@ -1,14 +1,16 @@
 r"""Hit: score a goal with a puck that lies on the own half, or rolls slowly there.
 
-Environments `3dof-hit` and `7dof-hit`; in the latter robot 2 moves its mallet along a figure of eight before its goal.
+Environments `3dof-hit` and `7dof-hit`; in the latter robot 2 moves its mallet along a figure of eight before its goal. In the
+edition of 2025: `hit`, which is like `7dof-hit`, and `hit_single`, without robot 2.
 World coordinates: origin in the table's centre, x towards the opponent's goal. The edition's file has the numbers.
 
 | start | quantity | range | unit |
 |---|---|---|---|
 | 3dof-hit | puck x, y | -0.7 … -0.2, ±0.39105, at rest | m |
-| 7dof-hit | puck x, y | the same | m |
+| 7dof-hit, hit, hit_single | puck x, y | the same | m |
 | | speed; direction, from -x | 0 … 0.5; ±(π/2 + 0.1) | m/s; rad |
 | | yaw rate | ±2 | rad/s |
+| hit, hit_single | motion, drawn again until | \|y + ẏ · 1 s\| < 0.43 | m |
 | both | joints | the robot's start, at rest | rad |
 
 | ends | when |
@@ -34,7 +36,7 @@ Success: x > 0.974 and \|y\| < 0.125, the opponent's goal, at the last step.
 | 3, 4, 5 | puck velocity | ±20, ±20, ±100 | m/s, m/s, rad/s |
 | 6 … 5+n | joint positions | the joints' range | rad |
 | 6+n … 5+2n | joint velocities, filtered | the joints' limits | rad/s |
-| 6+2n … 8+2n | opponent's rod tip x, y, z (7dof-hit) | 1.5 … 4.5, ±1.5, ±1.5 | m |
+| 6+2n … 8+2n | opponent's rod tip x, y, z (7dof-hit, hit) | 1.5 … 4.5, ±1.5, ±1.5 | m |
 
 | action, by order | rows | range | unit |
 |---|---|---|---|

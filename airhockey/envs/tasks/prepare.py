@@ -1,14 +1,14 @@
 r"""Prepare: fetch a puck from the rim, where it cannot be hit, to the middle of the own half.
 
-Environment `7dof-prepare`, one robot. World coordinates: origin in the table's centre, x towards the opponent's goal. The
-edition's file has the numbers.
+Environment `7dof-prepare`, and `prepare` in the edition of 2025; one robot. World coordinates: origin in the table's centre, x
+towards the opponent's goal. The edition's file has the numbers.
 
-| start | quantity | range | unit |
-|---|---|---|---|
-| along the side | puck x, \|y\| | -0.8 … -0.2, 0.39105 … 0.48535 | m |
-| beside the own goal | puck x, \|y\| | -0.94 … -0.8, 0.125 … 0.48535 | m |
-| both | sign of y | either, with the same chance; the puck is at rest | |
-| | joints | the robot's start, at rest | rad |
+| start | quantity | range | in 2025 | unit |
+|---|---|---|---|---|
+| along the side | puck x, \|y\| | -0.8 … -0.2, 0.39105 … 0.48535 | the same x, 0.41105 … 0.47535 | m |
+| beside the own goal | puck x, \|y\| | -0.94 … -0.8, 0.125 … 0.48535 | the same x, 0.125 … 0.47535 | m |
+| both | sign of y | either, with the same chance; at rest | the same | |
+| | joints | the robot's start, at rest | the same | rad |
 
 Which of the two is drawn in proportion to their areas.
 

@@ -2,7 +2,7 @@
 
 import abc
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,6 +54,14 @@ class Reward(abc.ABC):
         self.terms["constraints"] = -self._constraint_weight * self.violation(environment)
         return sum(self.terms.values())
 
+    def get_state(self) -> dict[str, Any]:
+        """What the next rewards depend on besides the environment."""
+        return dict(self.__dict__)
+
+    def set_state(self, state: dict[str, Any]) -> None:
+        """Go back to what was saved, of this reward or one like it."""
+        self.__dict__.update(state)
+
     @staticmethod
     def violation(env: Any) -> float:
         """(4.2) for the latest step."""
@@ -62,6 +70,24 @@ class Reward(abc.ABC):
             return 0.0
         by_name = {name: values[part] for name, part in env.constraint_slices.items()}
         return normalized_violated_constraints(by_name, env.edition.penalty_points)
+
+
+class RewardedState(NamedTuple):
+    """A moment of an environment and of its reward, if that is one of this package."""
+
+    environment: Any
+    reward: dict[str, Any] | None
+
+    @classmethod
+    def of(cls, env: Any, reward: Any) -> "RewardedState":
+        """The present moment of both."""
+        return cls(env.get_state(), reward.get_state() if isinstance(reward, Reward) else None)
+
+    def restore(self, env: Any, reward: Any) -> None:
+        """Take both back to it."""
+        env.set_state(self.environment)
+        if self.reward is not None and isinstance(reward, Reward):
+            reward.set_state(self.reward)
 
 
 class TaskReward(Reward):

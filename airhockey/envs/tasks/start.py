@@ -26,13 +26,15 @@ def draw(areas: tuple[Start, ...], random: np.random.RandomState) -> PuckState:
     (area,) = areas
     position, velocity = np.zeros(3), np.zeros(3)
     position[:2] = draw_place(area, random)
-    if area.speed is not None and area.angle is not None:
-        speed = random.uniform(*area.speed)
-        angle = random.uniform(*area.angle)
-        velocity[:2] = -math.cos(angle) * speed, math.sin(angle) * speed
-    if area.yaw_rate is not None:
-        velocity[2] = random.uniform(*area.yaw_rate)
-    return position, velocity
+    while True:
+        if area.speed is not None and area.angle is not None:
+            speed = random.uniform(*area.speed)
+            angle = random.uniform(*area.angle)
+            velocity[:2] = -math.cos(angle) * speed, math.sin(angle) * speed
+        if area.yaw_rate is not None:
+            velocity[2] = random.uniform(*area.yaw_rate)
+        if area.reach is None or abs(velocity[1] + position[1]) < area.reach:
+            return position, velocity
 
 
 def draw_place(area: Start, random: np.random.RandomState) -> Array:

@@ -11,7 +11,6 @@ import contextlib
 import hashlib
 import logging
 import pickle
-import signal
 import threading
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator
@@ -21,9 +20,10 @@ from typing import Any, TypeVar
 
 from airhockey import envs
 from airhockey.errors import AirHockeyError, ConfigurationError, MissingDependencyError
-from airhockey.evaluator.engines.engine import Engine, JobFailed
-from airhockey.evaluator.engines.processes import Processes, engine_for
-from airhockey.evaluator.engines.workers import ONE_THREAD, close
+from airhockey.evaluator.engines.engine import Engine, engine_for
+from airhockey.evaluator.engines.pool import JobFailed
+from airhockey.evaluator.engines.processes import Processes
+from airhockey.evaluator.engines.workers import ONE_THREAD, SAFE_PATH, children_environment, close, no_interrupts
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")
@@ -190,23 +190,33 @@ def _local(workers: int, attempts: int) -> Iterator[Any]:
     import dask
 
     settings = {"distributed.scheduler.worker-saturation": 1.0, "distributed.scheduler.allowed-failures": attempts - 1}
-    in_main_thread = threading.current_thread() is threading.main_thread()
-    with dask.config.set(settings):
-        handler = signal.signal(signal.SIGINT, signal.SIG_IGN) if in_main_thread else None
-        try:
+    with dask.config.set(settings), children_environment():
+        with no_interrupts():
             cluster = _distributed().LocalCluster(
                 n_workers=workers,
                 threads_per_worker=1,
                 processes=True,
                 dashboard_address=None,
-                env=ONE_THREAD,
+                env=ONE_THREAD | SAFE_PATH,
                 silence_logs=logging.CRITICAL,
+                security=_certificates(),
             )
-        finally:
-            if in_main_thread:
-                signal.signal(signal.SIGINT, handler)
         with cluster:
             yield cluster
+
+
+def _certificates() -> Any:
+    """Keys for this run alone: whoever may connect to a scheduler may run code as its owner, and loopback is open to all users.
+
+    Raises:
+        MissingDependencyError: The package that makes certificates is not installed.
+    """
+    try:
+        return _distributed().security.Security.temporary()
+    except ImportError as error:
+        raise MissingDependencyError(
+            f"--cluster {_LOCAL}N needs certificates: {error}; pip install 'airhockey[cluster]'"
+        ) from error
 
 
 @contextlib.contextmanager

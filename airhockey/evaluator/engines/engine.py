@@ -8,27 +8,16 @@ called when there are no more. Results come as they are ready. A pool keeps the 
 runs. A job whose worker dies, again and again, gives a `JobFailed`.
 """
 
-import abc
 from collections.abc import Callable, Generator, Iterable
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import Generic, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
+from airhockey.evaluator.engines.pool import JobFailed, Pool
+from airhockey.evaluator.engines.processes import Processes
 from airhockey.evaluator.engines.workers import close
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")
-
-
-@dataclass(frozen=True)
-class JobFailed:
-    """What a job gives whose worker died every time.
-
-    Attributes:
-        reason: One line.
-    """
-
-    reason: str
 
 
 class Engine(Protocol):
@@ -39,14 +28,6 @@ class Engine(Protocol):
     ) -> Generator[tuple[Job, Result | JobFailed], None, None]:
         """Yield each job with its result, in any order; raises what the function raises."""
         ...
-
-
-class Pool(AbstractContextManager["Pool[Job, Result]"], Generic[Job, Result]):
-    """Several runs of one function after another, which keeps what it built and where it runs until the pool is left."""
-
-    @abc.abstractmethod
-    def run(self, jobs: Iterable[Job]) -> Generator[tuple[Job, Result | JobFailed], None, None]:
-        """Yield each job with its result, in any order; raises what the function raises."""
 
 
 class InProcess:
@@ -74,3 +55,8 @@ class _InProcessPool(Pool[Job, Result]):
 
     def __exit__(self, *_: object) -> None:
         close(self.function)
+
+
+def engine_for(jobs: int) -> InProcess | Processes:
+    """The engine for a number of parallel jobs."""
+    return InProcess() if jobs == 1 else Processes(jobs)

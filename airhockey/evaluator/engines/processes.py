@@ -6,7 +6,7 @@ from multiprocessing import connection
 from typing import Any, TypeVar
 
 from airhockey.errors import AirHockeyError
-from airhockey.evaluator.engines.engine import InProcess, JobFailed, Pool
+from airhockey.evaluator.engines.pool import JobFailed, Pool
 from airhockey.evaluator.engines.workers import Task, Worker
 
 Job = TypeVar("Job")
@@ -21,7 +21,8 @@ class Processes:
 
     Attributes:
         count: Number of workers, ≥ 1.
-        attempts: How often a job is given to a worker before it has failed.
+        attempts: How often a job is given to a worker before it has failed, and how many workers in a row may die while they
+            start.
     """
 
     count: int
@@ -47,6 +48,7 @@ class _WorkerPool(Pool[Any, Any]):
     function: Callable[[Any], Any]
     busy: dict[Any, Worker] = field(default_factory=dict)
     idle: list[Worker] = field(default_factory=list)
+    failed_starts: int = 0
 
     def run(self, jobs: Iterable[Any]) -> Generator[tuple[Any, Any], None, None]:
         self._fresh: Iterator[Any] = iter(jobs)
@@ -84,6 +86,7 @@ class _WorkerPool(Pool[Any, Any]):
             yield from self.handle_exit(self.busy.pop(pipe))
             return
         if answer is None:
+            self.failed_starts = 0
             return
         error, result = answer
         if error is not None:
@@ -100,13 +103,13 @@ class _WorkerPool(Pool[Any, Any]):
         """A worker died: its task is tried again, or has failed."""
         reason = worker.reap()
         if not worker.started:
-            raise AirHockeyError(f"worker processes do not start ({reason}); one process does without: --jobs 1")
+            self.failed_starts += 1
+            if self.failed_starts >= self.engine.attempts:
+                raise AirHockeyError(f"worker processes do not start ({reason}); one process does without: --jobs 1")
+            worker.task.attempt -= 1  # it was never begun
+            self._retries.append(worker.task)
+            return
         if worker.task.attempt < self.engine.attempts:
             self._retries.append(worker.task)
         else:
             yield worker.task.job, JobFailed(f"the worker process died {worker.task.attempt} times over it ({reason})")
-
-
-def engine_for(jobs: int) -> InProcess | Processes:
-    """The engine for a number of parallel jobs."""
-    return InProcess() if jobs == 1 else Processes(jobs)

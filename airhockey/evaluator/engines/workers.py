@@ -19,6 +19,8 @@ ONE_THREAD = {
     "NUMBA_NUM_THREADS": "1",
     "VECLIB_MAXIMUM_THREADS": "1",
 }
+SAFE_PATH = {"PYTHONSAFEPATH": "1"}
+"""No child of ours imports from the present folder, which may be anybody's."""
 PATIENCE = 5.0  # [s] for a worker to end when asked to
 HELLO = "hello"
 
@@ -52,7 +54,7 @@ class Worker:
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         process = context.Process(target=_work, args=(theirs, function), daemon=True)
-        with _worker_surroundings():
+        with children_environment(), no_interrupts():
             process.start()
         theirs.close()  # or a dead worker would not show as the end of our pipe
         return cls(process, ours, Task(None))
@@ -130,12 +132,11 @@ def _die_with_parent() -> None:
 
 
 @contextlib.contextmanager
-def _worker_surroundings() -> Iterator[None]:
-    """Single-threaded libraries, and no Ctrl-C from the first moment on, for processes started inside the block."""
-    before = {name: os.environ.get(name) for name in ONE_THREAD}
-    in_main_thread = threading.current_thread() is threading.main_thread()
-    handler = signal.signal(signal.SIGINT, signal.SIG_IGN) if in_main_thread else None
-    os.environ.update(ONE_THREAD)
+def children_environment() -> Iterator[None]:
+    """Single-threaded libraries, and nothing imported from the present folder, for processes started inside the block."""
+    surroundings = ONE_THREAD | SAFE_PATH
+    before = {name: os.environ.get(name) for name in surroundings}
+    os.environ.update(surroundings)
     try:
         yield
     finally:
@@ -144,5 +145,15 @@ def _worker_surroundings() -> Iterator[None]:
                 del os.environ[name]
             else:
                 os.environ[name] = value
+
+
+@contextlib.contextmanager
+def no_interrupts() -> Iterator[None]:
+    """No Ctrl-C from the first moment on, for processes started inside the block."""
+    in_main_thread = threading.current_thread() is threading.main_thread()
+    handler = signal.signal(signal.SIGINT, signal.SIG_IGN) if in_main_thread else None
+    try:
+        yield
+    finally:
         if in_main_thread:
             signal.signal(signal.SIGINT, handler)

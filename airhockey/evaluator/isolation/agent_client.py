@@ -12,22 +12,26 @@ import signal
 import subprocess
 import time
 from collections.abc import Callable
-from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.errors import ActionError
-from airhockey.evaluator.isolation import channel
+from airhockey.evaluator.isolation import channel, memory_watch
+from airhockey.evaluator.isolation.answer_times import AnswerTimes
 from airhockey.evaluator.isolation.channel import Memory
 from airhockey.evaluator.isolation.failures import AgentDied, AgentError, AgentRaised, AgentTimeout
 from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.isolation.launch import Launch
 from airhockey.evaluator.isolation.limits import Limits
-from airhockey.evaluator.isolation.output import Output, printable
+from airhockey.evaluator.isolation.memory_watch import Watched
+from airhockey.evaluator.isolation.output import Output
 from airhockey.evaluator.isolation.pids import first_inside, only_child
+from airhockey.evaluator.isolation.process_tree import ProcessTree, descendants
+from airhockey.evaluator.isolation.restrict import Restrictions
 from airhockey.evaluator.isolation.shared_core import SharedCore
+from airhockey.inputs.names import shown
 
 Array = NDArray[np.float64]
 
@@ -43,6 +47,7 @@ class IsolatedAgent(AgentHandle):
 
     Attributes:
         interpolation_order: What the agent wants. Its preprocessors are applied over there.
+        times: What its answers cost.
 
     Raises:
         AgentError: It could not be built.
@@ -55,6 +60,8 @@ class IsolatedAgent(AgentHandle):
     _replies: int = -1
     _output: Output
     _core: SharedCore
+    _watched: Watched
+    times: AnswerTimes
 
     def __init__(
         self, launch: Launch, job: dict[str, Any], limits: Limits, seed: np.random.SeedSequence | None = None
@@ -62,13 +69,15 @@ class IsolatedAgent(AgentHandle):
         self._limits, self._launch = limits, launch
         self._seed: np.random.SeedSequence | None = None
         self._pid = 0
-        self._start()
+        self._nonces = channel.Nonces()
+        restrictions = Restrictions(limits, launch.user, launch.sandbox)
+        self._start(str(job["agent"]))
         try:
             self._await_start()
-            self._memory.write_text(
-                job | {"limits": asdict(limits), "user": launch.user, "counted": launch.counted, "seed": _words(seed)}
-            )
+            self._memory.write_text(job | {"restrictions": restrictions.to_json(), "seed": _words(seed)})
+            began = time.perf_counter()
             self._ask(channel.BUILD, limits.start)
+            self.times.add_build(time.perf_counter() - began)
             order = self._memory.read_text().get("interpolation_order", 3)
             self.interpolation_order = order if order is None or isinstance(order, int) else 3
         except BaseException:
@@ -88,7 +97,9 @@ class IsolatedAgent(AgentHandle):
         """A serve begins."""
         self._memory.write_text({"seed": _words(self._seed)})
         self._seed = None
+        began = time.perf_counter()
         self._ask(channel.EPISODE, self._limits.patience)
+        self._bounded(self.times.add_start, began)
 
     def act(self, observation: Array) -> Array:
         """The next command, in any shape that the agent likes.
@@ -99,21 +110,29 @@ class IsolatedAgent(AgentHandle):
         """
         self._core.follow()
         self._memory.write_observation(observation)
+        began = time.perf_counter()
         word = self._ask(channel.ACT, self._limits.patience)
+        self._bounded(self.times.add_command, began)
         if word == channel.BAD_ACTION:
             raise ActionError(_clean(self._memory.read_text()))
         return self._memory.read_action()
 
     def clock(self, kind: str) -> Callable[[], float]:
-        """Wall time as it passes here, or the CPU time of its process."""
+        """Wall time as it passes here, or what its commands cost, see `AnswerTimes`."""
         return self.cpu_clock if kind == "cpu" else time.perf_counter
 
     def cpu_clock(self) -> float:
-        """CPU time that its process has used, in [s]; 0 once it has ended."""
-        try:
-            return time.clock_gettime((~self._pid << 3) | 2)  # what clock_getcpuclockid gives
-        except OSError:
-            return 0.0
+        """What its commands so far have cost, in [s]."""
+        return self.times.charged
+
+    def thinks_for(self, seconds: float) -> float:
+        """Wait so long; gives the CPU time that it used meanwhile, though nobody asked it anything, in [s]."""
+        processes = self._watched.tree
+        processes.look()
+        before = processes.cpu_time()
+        time.sleep(seconds)
+        processes.look()
+        return max(processes.cpu_time() - before, 0.0)
 
     def stop(self) -> None:
         """Tell the agent that it is over, and end its process."""
@@ -125,8 +144,15 @@ class IsolatedAgent(AgentHandle):
     def close(self) -> None:
         """End its process and everything that it started. May be called twice."""
         process = self._process
+        left = []
+        if hasattr(self, "_watched"):
+            memory_watch.forget(self._watched)
+            left = descendants(process.pid) if process.returncode is None else []
         with contextlib.suppress(OSError):
             os.killpg(process.pid, signal.SIGKILL)
+        for pid in left:  # of a plain process; in a sandbox all end with the first
+            with contextlib.suppress(OSError):
+                os.kill(pid, signal.SIGKILL)
         process.wait()
         for descriptor in (self._requests, self._replies):
             if descriptor >= 0:
@@ -140,17 +166,17 @@ class IsolatedAgent(AgentHandle):
         with contextlib.suppress(AttributeError, OSError):
             self.close()
 
-    def _start(self) -> None:
-        """Start the process, with its pipes."""
+    def _start(self, name: str) -> None:
+        """Start the process, with its pipes; what it prints counts with what others of this name have printed."""
         shared = channel.new_memory()
         their_requests, self._requests = os.pipe()
         self._replies, their_replies = os.pipe()
         output, their_output = os.pipe()
-        self._output = Output(output)
+        self._output = Output(output, name)
         status, their_status = os.pipe()
         theirs = (their_requests, their_replies, shared)
         command = [*self._launch.command, *map(str, theirs)]
-        in_sandbox = self._launch.counted
+        in_sandbox = self._launch.sandbox
         if in_sandbox:
             command[1:1] = ["--info-fd", str(their_status)]
         try:
@@ -180,24 +206,41 @@ class IsolatedAgent(AgentHandle):
             raise self._exit_error()
         self._pid = self._process.pid if self._first is None else only_child(self._first)
         self._core = SharedCore(self._pid)
+        self._watched = Watched(ProcessTree(self._pid, self._first), self._limits.memory, self._limits.processes)
+        self.times = AnswerTimes(self._watched, self._limits)
+        for pid in (self._pid, self._first or self._pid):
+            # From outside, by one who may: then nobody inside can lower it again.
+            with contextlib.suppress(OSError), open(f"/proc/{pid}/oom_score_adj", "w") as score:
+                score.write("1000")
+        memory_watch.watch(self._watched)
 
     def _ask(self, word: bytes, patience: float) -> bytes:
         """Send a request and wait for the reply; an agent that gives none is stopped."""
         if self._requests < 0:
             raise AgentDied("its process has ended")
+        nonce = self._nonces.next()
         try:
-            os.write(self._requests, word)
+            os.write(self._requests, word + nonce)
         except BrokenPipeError:
             raise self._exit_error() from None
         reply = self._receive(patience)
-        if reply == channel.RAISED:
-            raise AgentRaised(_clean(self._memory.read_text()))
         if not reply:
             raise self._exit_error()
-        if reply not in (channel.DONE, channel.BAD_ACTION):
+        reply, echo = reply[:1], reply[1:]
+        if echo != nonce or reply not in (channel.DONE, channel.BAD_ACTION, channel.RAISED):
             self.close()
             raise AgentError("it wrote to the evaluator's pipe")
+        if reply == channel.RAISED:
+            raise AgentRaised(_clean(self._memory.read_text()))
         return reply
+
+    def _bounded(self, add: Callable[[float], None], began: float) -> None:
+        """Add the time since `began`; whoever has taken too much in all is stopped."""
+        try:
+            add(time.perf_counter() - began)
+        except AgentTimeout:
+            self.close()
+            raise
 
     def _receive(self, patience: float) -> bytes:
         """The agent's reply; empty where its process has ended."""
@@ -211,7 +254,7 @@ class IsolatedAgent(AgentHandle):
                 raise AgentTimeout(f"it did not answer within {patience:g} s and was stopped")
             if not self._output.drain():
                 self._poll.unregister(self._output.descriptor)
-        return os.read(self._replies, 1)
+        return os.read(self._replies, channel.MESSAGE + 1)  # one more, so that what is too much shows
 
     def _exit_error(self) -> AgentDied:
         """The error of a process that ended: how it did, and what it printed last."""
@@ -220,8 +263,11 @@ class IsolatedAgent(AgentHandle):
         code = self._process.poll()
         self._output.drain_all()
         said = [line.strip() for line in self.printed.splitlines() if line.strip()]
+        excess = self._watched.excess if hasattr(self, "_watched") else None
         self.close()
-        last = f"; its last words: {printable(said[-1])[:200]}" if said else ""
+        if excess is not None:
+            return AgentDied(excess)
+        last = f"; its last words: {shown(said[-1])}" if said else ""
         return AgentDied(f"its process ended ({_how(code)}){last}")
 
 
@@ -242,4 +288,4 @@ def _words(seed: np.random.SeedSequence | None) -> list[int] | None:
 def _clean(message: Any) -> str:
     """A message of the agent's as one printable line."""
     what = message.get("what") if isinstance(message, dict) else None
-    return " ".join(printable(what if isinstance(what, str) else "it gave no reason").split())[:1000]
+    return shown(" ".join((what if isinstance(what, str) else "it gave no reason").split()), 1000)

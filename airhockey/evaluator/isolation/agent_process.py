@@ -5,10 +5,7 @@
 It limits itself and gives up what rights it has before it loads anything of the agent.
 """
 
-import contextlib
-import ctypes
 import os
-import signal
 import sys
 from typing import Any
 
@@ -16,9 +13,7 @@ import numpy as np
 
 from airhockey.evaluator.isolation import channel
 from airhockey.evaluator.isolation.channel import Memory
-from airhockey.evaluator.isolation.limits import Limits
-
-_PR_SET_PDEATHSIG, _PR_SET_DUMPABLE = 1, 4
+from airhockey.evaluator.isolation.restrict import Restrictions
 
 
 def main() -> None:
@@ -30,8 +25,9 @@ def main() -> None:
         os.set_inheritable(pipe, False)
     server = Server(memory)
     os.write(replies, channel.HELLO)
-    while word := os.read(requests, 1):
-        os.write(replies, server.answer(word))
+    while request := os.read(requests, channel.MESSAGE):
+        word, nonce = request[:1], request[1:]
+        os.write(replies, server.answer(word) + nonce)
         if word == channel.STOP:
             break
     os._exit(0)  # threads of the agent do not keep it alive
@@ -64,11 +60,12 @@ class Server:
 
     def _build(self, job: dict[str, Any]) -> None:
         """Give up every right, then load the agent."""
-        restrict(job)
+        Restrictions.from_json(job["restrictions"]).apply()
         from airhockey.evaluator.isolation.build_local import build_from_names
 
         seed(job["seed"])
         self._agent, self._size = build_from_names(job)
+        os.environ["PYTHONPATH"] = os.pathsep.join([os.getcwd(), os.environ.get("PYTHONPATH", "")])  # of its children
         order = self._agent.interpolation_order
         self._memory.write_text({"interpolation_order": order if order is None else int(order)})
 
@@ -119,26 +116,6 @@ def seed(words: list[int] | None) -> None:
 
     if words is not None:
         seed_generators(np.array(words, dtype=np.uint32))
-
-
-def restrict(job: dict[str, Any]) -> None:
-    """Die with the evaluator, be the first to go when memory runs out, keep to the limits, and be nobody.
-
-    Args:
-        job: `limits`; `user`, a user's number to become or None; `counted`, whether processes are counted.
-    """
-    libc = ctypes.CDLL(None)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the evaluator's business
-    with contextlib.suppress(OSError), open("/proc/self/oom_score_adj", "w") as score:
-        score.write("1000")
-    Limits(**job["limits"]).apply(count_processes=job["counted"])
-    user = job["user"]
-    if user is not None:
-        os.setgroups([])
-        os.setresgid(user, user, user)
-        os.setresuid(user, user, user)
-        libc.prctl(_PR_SET_DUMPABLE, 1, 0, 0, 0)  # lost with the user
-    libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)  # after the user: it is lost with that too
 
 
 if __name__ == "__main__":

@@ -6,8 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from airhockey.agents.submission import is_submission, submission_folder
+from airhockey.agents.packaging.checkout import find_checkout
+from airhockey.agents.submission import is_submission
+from airhockey.errors import ConfigurationError
 from airhockey.evaluator.isolation.handle import AgentHandle
+from airhockey.evaluator.isolation.interpreters import Interpreter, foreign_job, interpreter
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.modes import REMOTE, Mode
 
@@ -20,6 +23,7 @@ def build_agent(
     mode: Mode = "none",
     limits: Limits | None = None,
     seed: np.random.SeedSequence | None = None,
+    python: str | None = None,
     **kwargs: Any,
 ) -> AgentHandle:
     """Build an agent for one robot of an environment, whose interpolation order there is the order of its actions.
@@ -31,6 +35,7 @@ def build_agent(
         mode: Where it lives.
         limits: What it may use there, and how long anybody waits.
         seed: Seeds the generators of a process of its own; in this process the caller does it.
+        python: Another interpreter for a submission's process.
         kwargs: Handed to the agent.
 
     Raises:
@@ -43,6 +48,7 @@ def build_agent(
         from airhockey.evaluator.isolation.remote import RemoteAgent
 
         return RemoteAgent(agent, env.env_info, order, limits.patience)
+    own = None if python is None else _own_interpreter(agent, mode, python)
     if mode == "none":
         from airhockey.evaluator.isolation.build_local import build_local
 
@@ -50,14 +56,28 @@ def build_agent(
     from airhockey.evaluator.isolation.agent_client import IsolatedAgent
     from airhockey.evaluator.isolation.launch import plain, sandboxed
 
-    folder = submission_folder(Path(agent).expanduser()) if is_submission(agent) else None
-    launch = plain(folder) if mode == "process" else sandboxed(folder, limits)
-    job = {
-        "agent": launch.submission or agent,
-        "env": env.name,
-        "order": order,
-        "edition": env.edition.edition,
-        "agent_id": agent_id,
-        "kwargs": kwargs,
-    }
+    checkout = find_checkout(Path(agent).expanduser()) if is_submission(agent) else None
+    launch = plain(checkout, own) if mode == "process" else sandboxed(checkout, limits, own)
+    if own is not None and checkout is not None:
+        inside = str(checkout.root) if mode == "process" else str(launch.submission)
+        job = foreign_job(checkout, inside, env, agent_id, kwargs) | {"agent": agent}
+    else:
+        job = {
+            "agent": launch.submission or agent,
+            "env": env.name,
+            "order": order,
+            "edition": env.edition.edition,
+            "agent_id": agent_id,
+            "kwargs": kwargs,
+        }
     return IsolatedAgent(launch, job, limits, seed)
+
+
+def _own_interpreter(agent: str, mode: Mode, python: str) -> Interpreter:
+    """The interpreter that a submission in a process of its own brings along."""
+    if not is_submission(agent) or mode == "none":
+        raise ConfigurationError(
+            f"--python is for submissions in a process of their own; {agent!r} runs with the evaluator "
+            "(--isolate process or sandbox for a submission)"
+        )
+    return interpreter(python)

@@ -8,8 +8,9 @@
     4096        the action                                agent
     65536       text: JSON                                the sender
 
-A message on a pipe is one byte. The evaluator believes nothing that it reads: it copies, and checks. The memory's size is
-sealed, or an agent that truncated it would kill the evaluator.
+A request on a pipe is one byte, and eight that nobody can foresee; the reply is one byte and the same eight, so that none can
+be written in advance. The evaluator believes nothing that it reads: it copies, and checks. The memory's size is sealed, or an
+agent that truncated it would kill the evaluator.
 """
 
 import fcntl
@@ -28,11 +29,29 @@ Array = NDArray[np.float64]
 BUILD, EPISODE, ACT, STOP = b"B", b"E", b"A", b"S"
 HELLO, DONE, RAISED, BAD_ACTION = b"H", b"K", b"X", b"N"
 
+NONCE = 8
+MESSAGE = 1 + NONCE
+"""Length of a request and of a reply, in bytes."""
 OBSERVATION, ACTION, TEXT, SIZE = 64, 4096, 65536, 131072
 MAX_DIMENSIONS = 4
 MAX_ACTION = (TEXT - ACTION) // 8
 _SEALS = 0x1 | 0x2 | 0x4  # F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW
 _F_ADD_SEALS = 1033
+
+
+class Nonces:
+    """Bytes that nobody can foresee, `NONCE` at a time; drawn from the system's generator for many requests at once."""
+
+    def __init__(self) -> None:
+        self._drawn, self._place = b"", 0
+
+    def next(self) -> bytes:
+        """The next ones."""
+        begin = self._place
+        if begin >= len(self._drawn):
+            self._drawn, begin = os.urandom(512 * NONCE), 0
+        self._place = begin + NONCE
+        return self._drawn[begin : self._place]
 
 
 def new_memory() -> int:

@@ -60,6 +60,10 @@ class AgentHandle(abc.ABC):
             kind: "wall" or "cpu".
         """
 
+    def thinks_for(self, seconds: float) -> float:
+        """Wait so long; gives the CPU time that it used meanwhile, in [s]; 0 where that cannot be told from the evaluator's."""
+        return 0.0
+
     @abc.abstractmethod
     def stop(self) -> None:
         """Tell it that it is over, and close."""

@@ -1,27 +1,26 @@
-"""How the child process of an agent is started: plainly, or under bubblewrap."""
+"""How the child process of an agent is started: plainly, or in a sandbox."""
 
-import functools
-import os
-import secrets
 import shutil
-import site
-import subprocess
-import sys
 import tempfile
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import airhockey
+from airhockey.agents.packaging.checkout import PACKAGE, Checkout
 from airhockey.evaluator.engines.workers import ONE_THREAD
+from airhockey.evaluator.isolation.interpreters import FOREIGN, Interpreter
 from airhockey.evaluator.isolation.limits import Limits
+from airhockey.evaluator.isolation.sandbox import (
+    SCRATCH,
+    closing,
+    is_root,
+    new_user,
+    python,
+    software_environment,
+    walls,
+)
+from airhockey.inputs.hashing import TOOLS, files_of
 
-BWRAP = "bwrap"
 SUBMISSION = "/submission"
-SCRATCH = "/tmp"
-_SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64")
-_SETTINGS = ("/etc/ld.so.cache", "/etc/ld.so.conf", "/etc/ld.so.conf.d", "/etc/alternatives", "/etc/localtime")
-_FIRST_USER, _USERS = 1 << 30, 1 << 29
 
 
 @dataclass
@@ -34,7 +33,7 @@ class Launch:
         folder: Where the child starts.
         submission: The path by which the child knows the submission; None for a player of the registry.
         user: Number of the user whom the child becomes; None to stay who it is.
-        counted: Whether its processes are counted apart from everybody else's.
+        sandbox: Whether it runs in a sandbox.
         temporary_folders: Folders to remove afterwards.
     """
 
@@ -43,73 +42,47 @@ class Launch:
     folder: str
     submission: str | None
     user: int | None = None
-    counted: bool = False
+    sandbox: bool = False
     temporary_folders: list[str] = field(default_factory=list)
 
 
-def plain(folder: Path | None) -> Launch:
+def plain(checkout: Checkout | None, own: Interpreter | None = None) -> Launch:
     """A child that only has limits.
 
     Args:
-        folder: The submission's, with `agent_builder.py`; None for a player of the registry.
+        checkout: The submission; None for a player of the registry.
+        own: The interpreter that it brings; None for ours.
     """
     scratch = tempfile.mkdtemp(prefix="airhockey-scratch-")
-    start = scratch if folder is None else str(folder.parent if folder.name == "air_hockey_agent" else folder)
-    name = None if folder is None else str(folder)
-    return Launch(_python(), environment(scratch), start, name, temporary_folders=[scratch])
+    root = None if checkout is None else str(checkout.root)
+    return Launch(_command(own), environment(scratch, own), root or scratch, root, temporary_folders=[scratch])
 
 
-def sandboxed(folder: Path | None, limits: Limits) -> Launch:
-    """A child that sees the software, its submission and a scratch folder in memory; no network, no other process.
+def sandboxed(checkout: Checkout | None, limits: Limits, own: Interpreter | None = None) -> Launch:
+    """A child that sees the software, the root of its submission and a scratch folder in memory; no network, no other process.
 
-    A root who starts it becomes a user of no rights, and of a number that nobody else has: the kernel counts no processes of
-    root's. Everybody else gets a user namespace, with a count of its own.
+    Raises:
+        ConfigurationError: The submission holds a link, a pipe or a device.
     """
     temporary_folders: list[str] = []
-    command = [BWRAP, *_namespaces(), *_file_system(limits.scratch)]
+    command = walls(limits.scratch, None if own is None else [*own.folders, str(FOREIGN.parent)])
     inside = None
-    if folder is not None:
-        inside = f"{SUBMISSION}/air_hockey_agent"
-        command += [
-            "--perms",
-            "0755",
-            "--dir",
-            SUBMISSION,
-            "--ro-bind",
-            str(_readable(folder, temporary_folders)),
-            inside,
-        ]
-    command += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/" if folder is None else SUBMISSION, "--"]
-    user = _FIRST_USER + secrets.randbelow(_USERS) if is_root() else None
-    return Launch([*command, *_python()], environment(SCRATCH), "/", inside, user, True, temporary_folders)
+    if checkout is not None:
+        alone = checkout.root == checkout.package
+        inside = f"{SUBMISSION}/{PACKAGE}" if alone else SUBMISSION
+        shown = str(_readable(checkout.root, temporary_folders))
+        command += ["--perms", "0755", "--dir", SUBMISSION] if alone else []
+        command += ["--ro-bind", shown, inside, "--chdir", inside]
+    command += [*closing(), *_command(own)]
+    return Launch(command, environment(SCRATCH, own), "/", inside, new_user(), True, temporary_folders)
 
 
-@functools.cache
-def why_no_sandbox() -> str | None:
-    """Why no sandbox can be had on this machine; None if it can. Tries it once."""
-    if shutil.which(BWRAP) is None:
-        return "bubblewrap is not installed (Debian: apt-get install bubblewrap)"
-    trial = [BWRAP, *_namespaces(), *_file_system(1 << 20), "--remount-ro", "/", "--", sys.executable, "-c", "pass"]
-    try:
-        done = subprocess.run(trial, capture_output=True, timeout=30, check=False)
-    except (OSError, subprocess.TimeoutExpired) as error:
-        return f"bubblewrap does not start: {error}"
-    if done.returncode != 0:
-        return f"bubblewrap cannot set up a sandbox: {done.stderr.decode(errors='replace').strip()[:200]}"
-    return None
-
-
-def environment(scratch: str) -> dict[str, str]:
-    """The child's environment: nothing of the evaluator's but where software is found."""
-    user_site = [site.getusersitepackages()] if site.ENABLE_USER_SITE else []
-    return {
-        "PATH": "/usr/local/bin:/usr/bin:/bin",
+def environment(scratch: str, own: Interpreter | None = None) -> dict[str, str]:
+    """The child's environment: nothing of the evaluator's but where software is found, and that only for our interpreter."""
+    ours = {
+        **software_environment(),
         "HOME": scratch,
         "TMPDIR": scratch,
-        "LANG": "C.UTF-8",
-        "PYTHONPATH": os.pathsep.join([str(_package().parent), *user_site]),
-        "PYTHONDONTWRITEBYTECODE": "1",
-        "PYTHONUNBUFFERED": "1",
         "MPLCONFIGDIR": scratch,
         "NUMBA_CACHE_LOCATOR_CLASSES": (
             "airhockey.evaluator.isolation.numba_cache.ReadOnlyCache,"
@@ -117,72 +90,26 @@ def environment(scratch: str) -> dict[str, str]:
         ),
         **ONE_THREAD,
     }
+    if own is not None:
+        del ours["PYTHONPATH"], ours["NUMBA_CACHE_LOCATOR_CLASSES"]
+    return ours
 
 
-@functools.cache
-def is_root() -> bool:
-    """Whether this is the machine's root, who can become anybody; the root of a user namespace cannot."""
-    with open("/proc/self/uid_map") as users:
-        return os.geteuid() == 0 and users.read().split()[:3] == ["0", "0", "4294967295"]
-
-
-def _python() -> list[str]:
-    return [sys.executable, "-P", "-m", "airhockey.evaluator.isolation.agent_process"]
-
-
-def _namespaces() -> list[str]:
-    """Arguments for namespaces of its own. Process 1 in there is bubblewrap's: with it all others end."""
-    if not is_root():
-        return ["--unshare-all", "--unshare-user", "--die-with-parent", "--new-session"]
-    apart = ["--unshare-ipc", "--unshare-pid", "--unshare-net", "--unshare-uts", "--unshare-cgroup-try"]
-    rights = ["--cap-drop", "ALL", "--cap-add", "CAP_SETUID", "--cap-add", "CAP_SETGID"]  # to become nobody
-    return [*apart, *rights, "--die-with-parent", "--new-session"]
-
-
-def _file_system(scratch: int) -> list[str]:
-    """Arguments that show the system's software and Python's, read-only, and folders in memory to write to."""
-    arguments: list[str] = []
-    for place in _SYSTEM:
-        if os.path.islink(place):
-            arguments += ["--symlink", os.readlink(place), place]
-        elif os.path.isdir(place):
-            arguments += ["--ro-bind", place, place]
-    for place in _SETTINGS:
-        arguments += ["--ro-bind-try", place, place]
-    folders = _python_folders()
-    above = {parent for place in folders for parent in Path(place).parents if str(parent) not in ("/", *_SYSTEM)}
-    for parent in sorted(above):
-        arguments += ["--perms", "0755", "--dir", str(parent)]  # empty but for what is shown, and open to everybody
-    for place in folders:
-        arguments += ["--ro-bind", place, place]
-    arguments += ["--proc", "/proc", "--dev", "/dev"]
-    for place in (SCRATCH, "/dev/shm"):
-        arguments += ["--perms", "1777", "--size", str(scratch), "--tmpfs", place]
-    return arguments
-
-
-def _python_folders() -> Sequence[str]:
-    """Where the interpreter, its packages and airhockey lie, beyond the system's own folders."""
-    folders = [sys.prefix, sys.base_prefix, *site.getsitepackages(), str(_package())]
-    if site.ENABLE_USER_SITE:
-        folders.append(site.getusersitepackages())
-    there = [Path(folder) for folder in dict.fromkeys(folders) if os.path.isdir(folder)]
-    outside = [folder for folder in there if not any(folder.is_relative_to(place) for place in _SYSTEM)]
-    outermost = [folder for folder in outside if not any(folder.is_relative_to(o) and folder != o for o in outside)]
-    return [str(folder) for folder in outermost]
-
-
-def _package() -> Path:
-    return Path(next(iter(airhockey.__path__))).resolve()
+def _command(own: Interpreter | None) -> list[str]:
+    return python("agent_process") if own is None else [own.path, "-I", str(FOREIGN)]
 
 
 def _readable(folder: Path, temporary_folders: list[str]) -> Path:
-    """The folder, or a copy where another user could not read it."""
-    if not is_root() or all(path.stat().st_mode & 0o004 for path in (folder, *folder.rglob("*")) if path.exists()):
+    """The folder, or a copy where another user could not read it; what tools leave in it is not looked at."""
+    files = list(files_of(folder))
+    places = {folder, *files, *(parent for file in files for parent in file.parents if parent.is_relative_to(folder))}
+    if not is_root() or all(place.stat().st_mode & (0o005 if place.is_dir() else 0o004) for place in places):
         return folder
     copy = Path(tempfile.mkdtemp(prefix="airhockey-submission-"))
     temporary_folders.append(str(copy))
-    shutil.copytree(folder, copy / "air_hockey_agent")
-    for path in (copy, *copy.rglob("*")):
-        path.chmod(0o755 if path.is_dir() else 0o644)
-    return copy / "air_hockey_agent"
+    target = copy / "entry"
+    shutil.copytree(folder, target, symlinks=True, ignore=shutil.ignore_patterns(*TOOLS))
+    for path in (copy, target, *target.rglob("*")):
+        if not path.is_symlink():
+            path.chmod(0o755 if path.is_dir() else 0o644)
+    return target

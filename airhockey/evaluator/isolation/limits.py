@@ -11,7 +11,8 @@ class Limits:
     """Upper bounds for one agent.
 
     Attributes:
-        memory: Address space of each process, in bytes. PyTorch alone maps one and a half GiB.
+        memory: Address space of each process, and what all of them hold together, in bytes. PyTorch alone maps one and a half
+            GiB.
         cpu: CPU time of each process, in [s]; no evaluation takes as long.
         file: Size of a file, in bytes.
         scratch: All files in the private scratch folder of a sandbox, in bytes.
@@ -19,6 +20,8 @@ class Limits:
         open_files: Open files of each process.
         start: Time to import and build the agent, in [s].
         patience: Time for any other answer, in [s], until the agent is stopped.
+        step, episode: Time on average for a command and for the start of an episode, in [s], beyond which the agent is stopped
+            once it has used up `patience` besides.
     """
 
     memory: int = 4 * GIB
@@ -29,6 +32,8 @@ class Limits:
     open_files: int = 256
     start: float = 300.0
     patience: float = 60.0
+    step: float = 0.2
+    episode: float = 5.0
 
     def apply(self, count_processes: bool) -> None:
         """Limit this process and its children.

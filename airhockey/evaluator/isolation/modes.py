@@ -5,7 +5,7 @@ from typing import Final, Literal
 
 from airhockey.agents.submission import is_submission
 from airhockey.errors import ConfigurationError, unknown
-from airhockey.evaluator.isolation.launch import why_no_sandbox
+from airhockey.evaluator.isolation.sandbox import why_no_sandbox
 
 Mode = Literal["none", "process", "sandbox"]
 MODES: Final = ("none", "process", "sandbox")

@@ -5,26 +5,35 @@ import os
 import select
 import sys
 
+from airhockey.inputs.names import shown
+
 _TAIL = 4096
 """How much of the end is kept, in bytes."""
 _SHOWN = 1 << 16
-"""How much is shown, in bytes."""
+"""How much of one agent is shown by this process, however often it is built again, in bytes."""
 _LAST_READS = 64
 """How often the pipe is read once the agent has ended; children of its may print for ever."""
+
+
+_left: dict[str, int] = {}
 
 
 class Output:
     """The reading end of the pipe that an agent's standard output and error are.
 
+    Args:
+        descriptor: Of the pipe.
+        name: The agent's.
+
     Attributes:
         descriptor: Of the pipe; -1 once it is closed.
     """
 
-    def __init__(self, descriptor: int) -> None:
+    def __init__(self, descriptor: int, name: str) -> None:
         os.set_blocking(descriptor, False)
         self.descriptor = descriptor
         self._tail = b""
-        self._left = _SHOWN
+        self._name = name
 
     @property
     def tail(self) -> str:
@@ -58,15 +67,11 @@ class Output:
 
     def _show(self, chunk: bytes) -> None:
         """On our standard error; control sequences could do things to a terminal."""
-        if self._left <= 0 or not chunk:
+        left = _left.get(self._name, _SHOWN)
+        if left <= 0 or not chunk:
             return
-        text = printable(chunk[: self._left].decode("utf-8", "replace"))
-        self._left -= len(chunk)
-        more = "" if self._left > 0 else "\n(what this agent prints is not shown any more)\n"
+        text = shown(chunk[:left].decode("utf-8", "replace"), 8 * _SHOWN, keep="\n\t")
+        _left[self._name] = left - len(chunk)
+        more = "" if left > len(chunk) else "\n(what this agent prints is not shown any more)\n"
         with contextlib.suppress(OSError, ValueError):
             sys.stderr.write(text + more)
-
-
-def printable(text: str) -> str:
-    """The text without control characters other than ends of lines and tabs."""
-    return "".join(letter if letter.isprintable() or letter in "\n\t" else " " for letter in text)

@@ -1,4 +1,4 @@
-"""Which process is the agent's: by the numbers that it has out here."""
+"""Which processes are the agent's, by the numbers that they have out here."""
 
 import json
 import os

@@ -89,10 +89,15 @@ class RemoteAgent(AgentHandle):
         """Send a request and receive as many bytes as the answer must have."""
         try:
             self._refuse_leftovers()
+            deadline = time.monotonic() + self._patience
             self._socket.settimeout(self._patience)
             self._socket.sendall(request)
             answer = b""
             while len(answer) < size:
+                left = deadline - time.monotonic()  # for the answer, not for each of its bytes
+                if left <= 0.0:
+                    raise TimeoutError
+                self._socket.settimeout(left)
                 chunk = self._socket.recv(size - len(answer))
                 if not chunk:
                     raise self._broken(f"it hung up after {len(answer)} of {size} bytes")

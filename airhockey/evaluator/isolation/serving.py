@@ -1,6 +1,8 @@
 """An agent behind a TCP port, seen from the agent: the counterpart of `remote.py`, one player at a time."""
 
+import select
 import socket
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -11,6 +13,8 @@ from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.isolation.remote import ACT, PREPROCESS, RESET, RESET_DONE
 
 LOOPBACK = "127.0.0.1"
+SILENCE = 10.0
+"""How long a player may be silent while another one waits, or in the middle of a request, in [s]."""
 
 
 def listen(host: str, port: int) -> socket.socket:
@@ -35,14 +39,21 @@ def serve(waiting: socket.socket, agent: AgentHandle, size: int, games: int | No
         with connection:
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             try:
-                answer_all(connection, agent, size)
+                answer_all(connection, agent, size, waiting)
             except OSError:
                 continue  # it hung up in the middle
         games = None if games is None else games - 1
 
 
-def answer_all(connection: socket.socket, agent: AgentHandle, size: int) -> None:
-    """Answer requests until the other side hangs up or says something else."""
+def answer_all(connection: socket.socket, agent: AgentHandle, size: int, waiting: socket.socket | None = None) -> None:
+    """Answer requests until the other side hangs up, says something else, or is silent while others wait.
+
+    Args:
+        connection: To the player.
+        agent: Who answers.
+        size: Number of entries of an observation.
+        waiting: Where others wait.
+    """
     answers: dict[bytes, Callable[[], bytes]] = {}
 
     def observation() -> Any:
@@ -62,8 +73,19 @@ def answer_all(connection: socket.socket, agent: AgentHandle, size: int) -> None
         return np.asarray(agent.act(observation()), dtype=np.float64).tobytes()
 
     answers = {RESET: reset, PREPROCESS: preprocess, ACT: act}
-    while (word := connection.recv(1)) in answers:
+    while (word := _next_word(connection, waiting)) in answers:
+        connection.settimeout(SILENCE)
         connection.sendall(answers[word]())
+
+
+def _next_word(connection: socket.socket, waiting: socket.socket | None) -> bytes:
+    """The next request; nothing where the other side has hung up, or is silent for long while somebody else waits."""
+    silent_since = time.monotonic()
+    while not select.select([connection], [], [], 1.0)[0]:
+        somebody_waits = waiting is not None and bool(select.select([waiting], [], [], 0.0)[0])
+        if somebody_waits and time.monotonic() - silent_since > SILENCE:
+            return b""
+    return connection.recv(1)
 
 
 def _receive(connection: socket.socket, size: int) -> bytes:

@@ -54,15 +54,10 @@ def judge(records: Sequence[EpisodeRecord], rules: Edition) -> Verdict:
         failures=sum(record.error is not None for record in records),
         penalty=points,
         deployability=rules.deployability.class_of(points),
-        official_class=official_class(points, len(records), rules),
+        official_class=rules.deployability.class_of(points * OFFICIAL_EPISODES / len(records)),
         violations=violated_episodes(records),
         late=sum(bool(_time_penalty(record, rules)) for record in records),
     )
-
-
-def official_class(points: float, episodes: int, rules: Edition) -> str:
-    """Deployability class of the penalty points of some episodes, at the rate of an official evaluation."""
-    return rules.deployability.class_of(points * OFFICIAL_EPISODES / episodes)
 
 
 def penalty(record: EpisodeRecord, rules: Edition) -> float:

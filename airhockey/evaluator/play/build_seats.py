@@ -30,6 +30,8 @@ class Entrant:
         limits: What it may use there, and how long anybody waits.
         parameters: Of the rule-based player.
         seed: Of the generators of a process of its own, while it is built.
+        python: Another interpreter for its process.
+        settings: Of our own players' controller.
     """
 
     agent: str
@@ -38,6 +40,8 @@ class Entrant:
     limits: Limits = field(default_factory=Limits)
     parameters: str | None = None
     seed: np.random.SeedSequence | None = None
+    python: str | None = None
+    settings: tuple[str, ...] = ()
 
     @property
     def first_order(self) -> int | None:
@@ -61,10 +65,14 @@ class Entrant:
         if self.order != "agent" and self.agent in AGENTS:
             # Our own agents can play any order; a submission's order is a matter of its agent_config.yml.
             kwargs["interpolation_order"] = env.formats[agent_id - 1].order
+        if self.settings and self.agent in AGENTS:
+            kwargs["settings"] = self.settings
         if self.parameters is not None:
             kwargs["parameters"] = self.parameters
         mode = choose(self.agent, None if self.isolate == "auto" else self.isolate).mode
-        return build_agent(self.agent, env, agent_id, mode=mode, limits=self.limits, seed=self.seed, **kwargs)
+        return build_agent(
+            self.agent, env, agent_id, mode=mode, limits=self.limits, seed=self.seed, python=self.python, **kwargs
+        )
 
 
 def build_seats(

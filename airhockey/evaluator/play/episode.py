@@ -86,10 +86,12 @@ class EpisodePlayer:
     def open(self, job: Job) -> Rollout:
         """An episode that is not begun, its agent seeded; the seat has failed where there is no agent."""
         task, seed = self._task_of(job.env), functools.partial(seeding.seed_of, self.options.seed, job.env, job.index)
-        seeding.seed_global_generators(seed(seeding.AGENT))
+        secret = self.options.agent_seed
+        for_agent = seeding.agent_seed_of(secret, self.options.seed, job.env, job.index, seeding.AGENT)
+        seeding.seed_global_generators(for_agent)
         for seat in task.seats:
-            seat.seed(seed(seeding.AGENT))
-        return Rollout(task.env, task.seats, seed(seeding.ENVIRONMENT))
+            seat.seed(for_agent)
+        return Rollout(task.env, task.seats, seed(seeding.ENVIRONMENT), self.options.real_time)
 
     def close(self) -> None:
         """Tell the agent that the evaluation is over, and let go of everything built."""
@@ -111,7 +113,7 @@ class EpisodePlayer:
         from airhockey import envs
 
         options = self.options
-        seed = seeding.seed_of(options.seed, name, 0, seeding.AGENT_BUILD)
+        seed = seeding.agent_seed_of(options.agent_seed, options.seed, name, 0, seeding.AGENT_BUILD)
         entrant = Entrant(
             options.agent,
             options.interpolation_order,
@@ -119,6 +121,8 @@ class EpisodePlayer:
             Limits(patience=options.patience),
             options.parameters,
             seed,
+            options.python,
+            options.settings,
         )
         make = functools.partial(envs.make, name, disturbances=self.profile, edition=options.edition)
         env, seats = build_seats(make, [entrant], Care(options.clock), seed)

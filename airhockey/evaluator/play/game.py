@@ -24,7 +24,7 @@ from airhockey.evaluator.play.events import EventLog
 from airhockey.evaluator.play.penalties import Penalties
 from airhockey.evaluator.play.rollout import Rollout
 from airhockey.evaluator.play.seat import Care, Seat
-from airhockey.evaluator.play.seeding import seed_global_generators
+from airhockey.evaluator.play.seeding import game_agents_seed, seed_global_generators
 from airhockey.evaluator.play.watchdog import Watch
 from airhockey.evaluator.runs.game_records import (
     AWAY,
@@ -71,8 +71,9 @@ class GamePlay:
         self.film: Film | None = None
         self._rules = edition(options.edition)
         self._episode = self._rules.horizon.task
-        self._environment_seed, self._agents_seed = np.random.SeedSequence(job.seed).spawn(2)
-        self.rollout = Rollout(env, seats, self._environment_seed)
+        self._environment_seed = np.random.SeedSequence(job.seed).spawn(1)[0]
+        self._agents_seed = game_agents_seed(options.agent_seed, job.seed, job.key)
+        self.rollout = Rollout(env, seats, self._environment_seed, options.real_time)
         self.log = EventLog(env, self._rules.game.faults_per_point)
         self.penalties = [Penalties(seat, self._rules, env.constraint_slices) for seat in seats]
 
@@ -234,7 +235,8 @@ class GamePlayer:
         """The players and the table, ready to begin."""
         from airhockey import envs
 
-        seed = functools.partial(np.random.SeedSequence, job.seed)
+        secret = self.options.agent_seed
+        seed = functools.partial(np.random.SeedSequence, job.seed if secret is None else (int(secret, 16), job.seed))
         given = self.options.isolate, Limits(patience=self.options.patience), None
         home = Entrant(job.home_agent, job.home_order, *given, seed(spawn_key=(2, 1)))
         away = Entrant(job.away_agent, job.away_order, *given, seed(spawn_key=(2, 2)))

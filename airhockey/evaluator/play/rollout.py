@@ -1,11 +1,13 @@
 """The one loop: seats at an environment, one or two, step by step."""
 
+import time
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.errors import ActionError, SimulationError
 from airhockey.evaluator.play.seat import Seat
 
@@ -21,6 +23,7 @@ class Rollout:
         env: The environment.
         seats: One for each of its players.
         seed: The environment's.
+        real_time: Pace of the steps relative to the robot's; 0 for as fast as possible.
 
     Attributes:
         observation: The latest one; in a game both players' in a row. Shape (d,).
@@ -30,11 +33,12 @@ class Rollout:
         info: What the environment tells of the latest step.
     """
 
-    def __init__(self, env: Any, seats: Sequence[Seat], seed: Any) -> None:
+    def __init__(self, env: Any, seats: Sequence[Seat], seed: Any, real_time: float = 0.0) -> None:
         self.env, self.seats, self._seed = env, seats, seed
         self.observation: Any = None
         self.steps, self.reward, self.over = 0, 0.0, False
         self.info: dict[str, Any] = {}
+        self._period, self._next = (CONTROL_PERIOD / real_time if real_time > 0.0 else 0.0), 0.0
 
     @property
     def failed(self) -> bool:
@@ -50,6 +54,7 @@ class Rollout:
             seat.start()
         seed, self._seed, self.over = self._seed, None, False
         self.observation = self.env.reset(seed=seed)
+        self._next = time.perf_counter()
         return self.observation
 
     def step(self) -> bool:
@@ -75,7 +80,18 @@ class Rollout:
         except (ActionError, SimulationError) as error:
             self._blame(error)
             return False
+        if self._period:
+            self._keep_pace()
         return True
+
+    def _keep_pace(self) -> None:
+        """Wait for the end of the control step; time that was lost is not made up for."""
+        self._next += self._period
+        left = self._next - time.perf_counter()
+        if left > 0.0:
+            time.sleep(left)
+        else:
+            self._next -= left
 
     def _blame(self, error: BaseException) -> None:
         """The simulation failed: over the seat whose command was absurd, or over all."""

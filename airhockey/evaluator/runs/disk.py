@@ -1,16 +1,21 @@
 """Folders of results: begun empty, written by one process at a time, never left with half a file."""
 
 import contextlib
+import errno
 import fcntl
+import io
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
 from airhockey.errors import AirHockeyError, ConfigurationError
 
 JSON = msgspec.json.Encoder()
+_IN_MEMORY = 256 << 20
+"""Up to which size a file is made in memory, in bytes."""
 
 
 def begin_folder(path: Path, name: str, manifest: msgspec.Struct) -> None:
@@ -58,8 +63,49 @@ def write_record(path: Path, content: msgspec.Struct) -> None:
 def replace_file(path: Path, content: bytes) -> None:
     """Write a file so that it is the old one or the new one, never half of it."""
     part = path.with_name(path.name + ".part")
-    part.write_bytes(content)
-    part.replace(path)
+    try:
+        part.write_bytes(content)
+        part.replace(path)
+    except OSError:
+        part.unlink(missing_ok=True)
+        raise
+
+
+@contextlib.contextmanager
+def new_hdf5(path: Path, size: int = 0) -> Iterator[Any]:
+    """An HDF5 file to be filled in the block; it has its name once it is complete.
+
+    HDF5 ends the process where the disk is full. So a small file is made in memory and written by the operating system, which
+    says so; for a large one there must be room before it is begun.
+
+    Args:
+        path: Where it is to be.
+        size: About how large it will be, in bytes, where that is known to be much.
+
+    Raises:
+        OSError: There is no room for it.
+    """
+    import h5py
+
+    part = path.with_suffix(".part")
+    if size > _IN_MEMORY:
+        room = os.statvfs(path.parent)
+        if room.f_bavail * room.f_frsize < 1.1 * size:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
+        with h5py.File(part, "w", libver="latest") as file:
+            yield file
+        part.replace(path)
+        return
+    content = io.BytesIO()
+    with h5py.File(content, "w", libver="latest") as file:
+        yield file
+    try:
+        with part.open("wb") as raw:
+            raw.write(content.getbuffer())
+        part.replace(path)
+    except OSError:
+        part.unlink(missing_ok=True)
+        raise
 
 
 @contextlib.contextmanager
@@ -68,4 +114,5 @@ def disk_errors(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise AirHockeyError(f"cannot write to {str(path)!r}: {' '.join(str(error).split())}") from error
+        why = error.strerror or " ".join(str(error).split())
+        raise AirHockeyError(f"cannot write to {str(path)!r}: {why}; make room and go on with --resume") from error

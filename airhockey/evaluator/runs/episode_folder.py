@@ -75,8 +75,7 @@ class EpisodeFolder(RunFolder[Options, EpisodeRecord]):
         with disk_errors(self.path):
             (self.path / SEGMENTS).mkdir(exist_ok=True)
             segment = self.path / SEGMENTS / f"{self._next_segment:06d}.h5"
-            trajectories.write(segment.with_suffix(".part"), episodes)
-            segment.with_suffix(".part").rename(segment)
+            trajectories.write(segment, episodes)
         self._next_segment += 1
         self.keep(*(episode.record for episode in episodes))
         self._flushed_at = time.monotonic()

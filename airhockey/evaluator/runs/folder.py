@@ -19,6 +19,7 @@ from airhockey import envs
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator.runs import journal
 from airhockey.evaluator.runs.disk import begin_folder, disk_errors, lock_folder, write_record
+from airhockey.evaluator.runs.inputs import check_unchanged, hashes_of
 from airhockey.evaluator.runs.journal import Record
 from airhockey.evaluator.runs.manifest import (
     Manifest,
@@ -59,6 +60,7 @@ class RunFolder(Generic[Options, Record]):
             if asked is not None:
                 check_same_run(path, self.manifest, asked)
                 check_versions(path, self.manifest.versions, self.versions())
+                check_unchanged(path, self.manifest.inputs)
             with disk_errors(path):
                 self.records: list[Record] = self.recover()
 
@@ -82,6 +84,7 @@ class RunFolder(Generic[Options, Record]):
                 profile=load_disturbances(option_of(options, "disturbances")),
                 versions=cls.versions(),
                 created=now(),
+                inputs=hashes_of(options),
                 **more,
             ),
         )
@@ -165,12 +168,14 @@ class RunFolder(Generic[Options, Record]):
 
     def change(self, options: Options) -> None:
         """Replace the options of a run that may be extended."""
-        manifest = msgspec.structs.replace(self.manifest, options=options)
+        inputs = hashes_of(options) | self.manifest.inputs
+        manifest = msgspec.structs.replace(self.manifest, options=options, inputs=inputs)
         with disk_errors(self.path):
             write_record(self.path / self.name, manifest)
         self.manifest = manifest
 
     def keep_result(self, result: msgspec.Struct) -> None:
-        """Leave the result beside what it was computed from."""
+        """Leave the result beside what it was computed from; raises `ConfigurationError` where that was changed meanwhile."""
+        check_unchanged(self.path, self.manifest.inputs)
         with disk_errors(self.path):
             write_record(self.path / "result.json", result)

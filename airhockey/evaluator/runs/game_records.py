@@ -34,6 +34,8 @@ class GameOptions(msgspec.Struct, frozen=True, kw_only=True):
         isolate: Where agents live; "auto" is with the evaluator for our own, elsewhere for submissions, as far away as the
             machine can have them.
         patience: Longest time for an answer of an agent that lives elsewhere, in [s].
+        real_time: Pace of the steps relative to the robots', for agents that think beside them; 0: as fast as possible.
+        agent_seed: As in `records.Options`.
     """
 
     steps: int = 45000
@@ -43,6 +45,8 @@ class GameOptions(msgspec.Struct, frozen=True, kw_only=True):
     edition: str = "2023"
     isolate: Literal["auto", "none", "process", "sandbox"] = "none"
     patience: float = 60.0
+    real_time: float = 0.0
+    agent_seed: str | None = None
 
 
 class GameJob(msgspec.Struct, frozen=True):

@@ -7,6 +7,8 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.evaluator.runs.disk import new_hdf5
+
 Rows = NDArray[np.float32]
 
 
@@ -35,13 +37,11 @@ class Film:
 
 def write_film(path: Path, rows: Rows, record: bytes) -> None:
     """Write a game's rows, with its record as JSON; the file is complete once it has its name."""
-    part = path.with_suffix(".part")
-    with h5py.File(part, "w", libver="latest") as file:
+    with new_hdf5(path) as file:
         file.create_dataset(
             "base_observations", data=rows, chunks=True, compression="gzip", compression_opts=1, shuffle=True
         )
         file.attrs["record"] = np.void(record)
-    part.replace(path)
 
 
 def read_film(path: Path) -> Rows:

@@ -28,6 +28,7 @@ class Manifest(msgspec.Struct, Generic[Options], frozen=True, kw_only=True):
         versions: Of the software that results depend on.
         created: Local time, ISO 8601.
         format: Of the run's folder.
+        inputs: Path of an agent or a file -> SHA-256 of its content.
     """
 
     options: Options
@@ -35,6 +36,7 @@ class Manifest(msgspec.Struct, Generic[Options], frozen=True, kw_only=True):
     versions: dict[str, str]
     created: str
     format: int = 1
+    inputs: dict[str, str] = {}
 
 
 class TrainingManifest(Manifest[Options], Generic[Options], frozen=True, kw_only=True):

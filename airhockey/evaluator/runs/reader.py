@@ -117,11 +117,11 @@ class Tournament(Games[TournamentOptions]):
     """Games of everybody against everybody."""
 
 
-class Nothing(_Folder[Options]):
+class Unreadable(_Folder[Options]):
     """A path at which there is nothing to report on; the notes say why."""
 
 
-Source = Run | Match | Tournament | Nothing
+Source = Run | Match | Tournament | Unreadable
 
 
 def open_source(path: Path) -> Source:
@@ -133,10 +133,10 @@ def open_source(path: Path) -> Source:
     if (path / TOURNAMENT).exists():
         return _usable(_open_games(Tournament(path), TOURNAMENT, TournamentOptions), path)
     if not path.exists():
-        return Nothing(path, notes=["there is no such folder"])
+        return Unreadable(path, notes=["there is no such folder"])
     if not path.is_dir():
-        return Nothing(path, notes=["it is not a folder; give the folder of a run, a match or a tournament"])
-    return Nothing(path, notes=[f"it holds no results: there is none of {', '.join(MANIFESTS)} in it"])
+        return Unreadable(path, notes=["it is not a folder; give the folder of a run, a match or a tournament"])
+    return Unreadable(path, notes=[f"it holds no results: there is none of {', '.join(MANIFESTS)} in it"])
 
 
 def short_name(agent: str) -> str:
@@ -151,7 +151,7 @@ def _usable(source: Run | Match | Tournament, path: Path) -> Source:
     if source.records:
         return source
     what = "no episode is finished" if isinstance(source, Run) else "no game is finished"
-    return Nothing(path, notes=[*source.notes, what])
+    return Unreadable(path, notes=[*source.notes, what])
 
 
 def _open_run(path: Path) -> Run:

@@ -27,6 +27,11 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
         edition: Rule edition.
         isolate: Where the agent lives: with the evaluator, in a process of its own, or in a sandbox.
         patience: Longest time for an answer of an agent that lives elsewhere, in [s].
+        real_time: Pace of the steps relative to the robot's, for agents that think beside them; 0: as fast as possible.
+        python: Absolute path of another interpreter for the agent's process; None for the evaluator's own.
+        settings: Of our own players' controller, as in "control.solver=osqp".
+        agent_seed: Secret from which the seeds of the agent's own generators come, in hexadecimal, so that no agent can find the
+            environment's; None for seeds that follow from `seed`.
         parameters: Of the rule-based player: a name that it knows or the absolute path of a YAML file; None for its own.
     """
 
@@ -40,7 +45,11 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     edition: str = "2023"
     isolate: Literal["none", "process", "sandbox"] = "none"
     patience: float = 60.0
+    real_time: float = 0.0
+    python: str | None = None
+    settings: tuple[str, ...] = ()
     parameters: str | None = None
+    agent_seed: str | None = None
 
 
 class Job(msgspec.Struct, frozen=True):
@@ -113,7 +122,6 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
         success: Share of episodes, 0 … 1.
         penalty: Penalty points, summed over the episodes.
         violations: Constraint name -> number of episodes that violated it.
-        late: Number of episodes that cost points for computation time.
         agent_errors: Number of episodes that the agent failed.
     """
 
@@ -126,7 +134,6 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
     penalty: float
     deployability: str
     violations: dict[str, int]
-    late: int
     computation_time: RunTime
     agent_errors: int
 

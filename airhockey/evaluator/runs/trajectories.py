@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.errors import ConfigurationError
+from airhockey.evaluator.runs.disk import new_hdf5
 from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Trajectory
 
 TRAJECTORIES = "trajectories.h5"  # the file of a finished run
@@ -41,7 +42,7 @@ def write(path: Path, episodes: Iterable[Episode]) -> None:
     by_env: dict[str, list[Episode]] = {}
     for episode in episodes:
         by_env.setdefault(episode.record.env, []).append(episode)
-    with h5py.File(path, "w", libver="latest") as file:
+    with new_hdf5(path) as file:
         for env, played in by_env.items():
             group = file.create_group(env)
             group["episodes"] = _table(played)
@@ -58,8 +59,8 @@ def merge(sources: Iterable[Path], target: Path) -> None:
         sources: Files written by `write`, no episode in two of them.
         target: Written beside its place first, then put there.
     """
-    part = target.with_suffix(".part")
-    with h5py.File(part, "w", libver="latest") as merged:
+    sources = list(sources)
+    with new_hdf5(target, sum(source.stat().st_size for source in sources)) as merged:
         for source in sources:
             with h5py.File(source) as file:
                 for env in file:
@@ -68,7 +69,6 @@ def merge(sources: Iterable[Path], target: Path) -> None:
             order = np.argsort(group["episodes"]["index"])
             for name in ("episodes", "records"):
                 group[name][...] = group[name][()][order]
-    part.replace(target)
 
 
 def read_records(path: Path) -> list[EpisodeRecord]:

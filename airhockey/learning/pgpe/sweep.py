@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.errors import AirHockeyError
-from airhockey.evaluator.engines.engine import InProcess, JobFailed
+from airhockey.evaluator.engines.engine import InProcess
+from airhockey.evaluator.engines.pool import JobFailed
 from airhockey.evaluator.engines.processes import Processes
 from airhockey.learning.pgpe.records import Outcome, PgpeManifest, RolloutJob, Settings
 from airhockey.learning.pgpe.rollouts import Rollouts

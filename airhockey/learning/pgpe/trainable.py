@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from airhockey.agents.parameters import convert
 from airhockey.agents.thesis.parameters import ThesisParameters
 from airhockey.errors import ConfigurationError, unknown
+from airhockey.inputs.plain_yaml import load_yaml
 
 Array = NDArray[np.float64]
 
@@ -44,7 +45,7 @@ class Range:
 def ranges() -> dict[str, Range]:
     """Every trainable parameter by name."""
     text = resources.files(__package__).joinpath("trainable.yaml").read_text(encoding="utf-8")
-    return {name: Range(*map(float, values)) for name, values in yaml.safe_load(text).items()}
+    return {name: Range(*map(float, values)) for name, values in load_yaml(text, "trainable.yaml").items()}
 
 
 def names_of(task: str, asked: Sequence[str] = (), fixed: Sequence[str] = (), only: str | None = None) -> list[str]:

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from airhockey.agents.thesis.parameters import ThesisParameters
 from airhockey.errors import AirHockeyError, ConfigurationError
-from airhockey.evaluator.engines.engine import InProcess, JobFailed, Pool
+from airhockey.evaluator.engines.engine import InProcess
+from airhockey.evaluator.engines.pool import JobFailed, Pool
 from airhockey.evaluator.engines.processes import Processes
 from airhockey.learning.diverged import DivergedError
 from airhockey.learning.pgpe.folder import TrainingFolder

@@ -12,9 +12,10 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from airhockey.agents.atacom.controller import AtacomController
-from airhockey.agents.atacom.skill import REPEAT, Situation, Skill, situation
+from airhockey.agents.atacom.skill import REPEAT, LearnedTask, situation
 from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.estimation.kalman import PuckFilter
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, to_table
 from airhockey.envs.gymnasium import AirHockeyEnv
 
@@ -45,7 +46,7 @@ class SkillEnv(gymnasium.Wrapper[Any, Any, Array, Array]):
     LONGEST = 250
     """Actions after which an episode is truncated; the tasks themselves end before."""
 
-    def __init__(self, env: AirHockeyEnv, skill: Skill) -> None:
+    def __init__(self, env: AirHockeyEnv, skill: LearnedTask) -> None:
         super().__init__(env)
         self._environment = env.environment
         info = env.environment.env_info
@@ -117,4 +118,4 @@ class SkillEnv(gymnasium.Wrapper[Any, Any, Array, Array]):
         position, velocity = observation[self._info["puck_pos_ids"]], observation[self._info["puck_vel_ids"]]
         puck, tip = np.array([*to_table(position), position[2]]), to_table(self.controller.tip)
         touching = bool(np.hypot(*(puck[:2] - tip)) < CONTACT + _NEAR)
-        return situation(self._filter.update(puck, velocity, touching).state, self.controller)
+        return situation(self._filter.update(puck, velocity, touching), self.controller)

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.atacom.features import HORIZON, LINE, crossing
-from airhockey.agents.atacom.skill import DEFEND, HOME_SKILL, Situation
+from airhockey.agents.atacom.skill import DEFEND, HOME_SKILL
 from airhockey.agents.estimation.motion import puck_motion
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, HALF_LENGTH, HOME, to_table
 from airhockey.envs.gymnasium import AirHockeyEnv
 from airhockey.envs.tasks import reward_for
@@ -34,10 +35,14 @@ class DefendEnv(SkillEnv):
     def conclude(self, seen: Situation) -> tuple[bool, float]:
         """The task is played to its end at rest; the speed that was left to the puck costs 2 per [m]/[s], up to 4."""
         self.rest()
-        return self._success, -self.CALM * min(float(np.hypot(seen.puck[2], seen.puck[3])), 2.0)
+        return self._success, -self.CALM * min(float(np.hypot(seen.puck.state[2], seen.puck.state[3])), 2.0)
 
     def _nearness(self, now: Situation) -> float:
-        y = crossing(now.puck, LINE, HORIZON, self._constants)[1] if now.puck[0] > LINE else now.puck[1]
+        y = (
+            crossing(now.puck.state, LINE, HORIZON, self._constants)[1]
+            if now.puck.state[0] > LINE
+            else now.puck.state[1]
+        )
         return -self.NEARNESS * abs(float(y - now.tip[1]))
 
 
@@ -67,12 +72,12 @@ class HomeEnv(SkillEnv):
 
     def shaping(self, before: Situation, after: Situation) -> float:
         """−‖way‖ − 0.2 min(1, ‖way‖ / 0.1 m) for every action, and −1 while the mallet touches the puck."""
-        gap, way = (float(np.hypot(*(point - after.tip))) for point in (after.puck[:2], HOME))
+        gap, way = (float(np.hypot(*(point - after.tip))) for point in (after.puck.position, HOME))
         return -way - 0.2 * min(1.0, way / self.NEAR) - self.TOUCH * (gap - CONTACT < 0.005)
 
     def conclude(self, seen: Situation) -> tuple[bool, float]:
         """A success is to arrive with the puck still on the table."""
-        on_table = abs(float(seen.puck[0])) < HALF_LENGTH
+        on_table = abs(float(seen.puck.state[0])) < HALF_LENGTH
         arrived = HOME_SKILL.finished(seen) and on_table
         return arrived, self.ARRIVAL * arrived - 5.0 * (not on_table)
 

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,15 +52,21 @@ def rows_of(edges: Array, *counts: NDArray[np.int64], form: str = ".3g") -> list
     ]
 
 
+class Axes(NamedTuple):
+    """What stands at the axes, and whether they are logarithmic."""
+
+    x_label: str
+    y_label: str
+    log_x: bool = False
+    log_y: bool = False
+
+
 def histogram(
     edges: Array,
     series: Sequence[Series],
-    x_label: str,
-    y_label: str,
+    axes: Axes,
     title: str,
     *,
-    log_x: bool = False,
-    log_y: bool = False,
     rules: Sequence[tuple[float, str]] = (),
     include: float | None = None,
 ) -> Markup:
@@ -68,22 +75,29 @@ def histogram(
     Args:
         edges: Of the bins. Shape (b + 1,).
         series: Each with counts of shape (b,).
+        axes: What the bins and the counts are.
         title: What is read out instead of it.
         rules: Labelled vertical lines: a limit, a mean.
         include: A value that the x axis reaches whatever the data are.
     """
     total = (
-        np.sum([one.counts for one in series], axis=0) if not log_y else np.max([one.counts for one in series], axis=0)
+        np.sum([one.counts for one in series], axis=0)
+        if not axes.log_y
+        else np.max([one.counts for one in series], axis=0)
     )
     highest = float(max(total.max(), 1))
-    y = Scale(0.5, 10.0 ** math.ceil(math.log10(highest * 1.2)), log=True) if log_y else Scale(0.0, _ceiling(highest))
+    y = (
+        Scale(0.5, 10.0 ** math.ceil(math.log10(highest * 1.2)), log=True)
+        if axes.log_y
+        else Scale(0.0, _ceiling(highest))
+    )
     low, high = float(edges[0]), float(edges[-1])
     if include is not None:
         low, high = min(low, include), max(high, include)
-    plot = Plot(Scale(low, high, log=log_x), y, x_label, y_label)
+    plot = Plot(Scale(low, high, log=axes.log_x), y, axes.x_label, axes.y_label)
     below = np.zeros(len(edges) - 1)
     for one in series:
-        base = np.zeros_like(below) if log_y else below
+        base = np.zeros_like(below) if axes.log_y else below
         plot.add(_bars(plot, edges, base, base + one.counts, one))
         below = base + one.counts
     for value, label in rules:

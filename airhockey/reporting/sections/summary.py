@@ -10,7 +10,7 @@ from airhockey.envs.disturbances import Disturbances
 from airhockey.envs.editions import edition
 from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES, PHASES
 from airhockey.evaluator.judging.tasks import score as phase_score
-from airhockey.evaluator.runs.reader import Match, Nothing, Run, Source, Tournament, short_name
+from airhockey.evaluator.runs.reader import Match, Run, Source, Tournament, Unreadable, short_name
 from airhockey.reporting import words
 from airhockey.reporting.blocks import Row, badge, details, facts, paragraphs, section, table
 from airhockey.reporting.markup import Child, Markup, element, joined
@@ -56,7 +56,7 @@ def missing(sources: Iterable[Source], below: Path | None = None) -> Markup | No
 
 def conditions(sources: Iterable[Source], labels: dict[int, str]) -> Markup:
     """Where the results come from and under which conditions they were played, side by side."""
-    shown = [source for source in sources if not isinstance(source, Nothing)]
+    shown = [source for source in sources if not isinstance(source, Unreadable)]
     columns = [_conditions_of(source) for source in shown]
     names = list(dict.fromkeys(name for column in columns for name in column))
     rows: list[Row] = [(name, *(column.get(name, "–") for column in columns)) for name in names]

@@ -81,11 +81,41 @@ class CatchCost(NamedTuple):
     loyalty: float
     lead: float
     follow: float
-    grip: bool
+    grip: bool = True
+
+
+class PuckPath(NamedTuple):
+    """Where a puck will be at every `STEP`.
+
+    Attributes:
+        states: Shape (k, 5).
+        bounces: So far. Shape (k,).
+        since: Time since the last one, in [s]. Shape (k,).
+    """
+
+    states: Array
+    bounces: Array
+    since: Array
+
+
+class Way(NamedTuple):
+    """A cubic in time from one state of the mallet to another.
+
+    Attributes:
+        start, start_velocity: In [m] and [m]/[s]. Shapes (2,).
+        end, end_velocity: The same at its end.
+        time: It takes, in [s].
+    """
+
+    start: Array
+    start_velocity: Array
+    end: Array
+    end_velocity: Array
+    time: float
 
 
 @compiled
-def puck_path(state: Array, steps: int, mouth: float, constants: Array) -> tuple[Array, Array, Array]:
+def puck_path(state: Array, steps: int, mouth: float, constants: Array) -> PuckPath:
     """Where a puck will be at every `STEP`, until it may be in our goal.
 
     Args:
@@ -93,9 +123,6 @@ def puck_path(state: Array, steps: int, mouth: float, constants: Array) -> tuple
         steps: How far to look.
         mouth: See `CatchCost`.
         constants: `PuckMotion.constants`.
-
-    Returns:
-        States (k, 5), bounces so far (k,), and the time since the last one (k,), in [s].
     """
     path = np.empty((steps + 1, 5))
     bounces, since = np.empty(steps + 1), np.empty(steps + 1)
@@ -108,8 +135,8 @@ def puck_path(state: Array, steps: int, mouth: float, constants: Array) -> tuple
         since[i] = 0.0 if new > 0 else since[i - 1] + STEP
         path[i] = moving
         if end and abs(moving[1]) < mouth:
-            return path[:i], bounces[:i], since[:i]
-    return path, bounces, since
+            return PuckPath(path[:i], bounces[:i], since[:i])
+    return PuckPath(path, bounces, since)
 
 
 @compiled
@@ -126,8 +153,9 @@ def meeting(state: Array, wish: CatchCost) -> tuple[Array, Array]:
 
 
 @compiled
-def effort(start: Array, velocity: Array, end: Array, end_velocity: Array, time: float, reach: Reach) -> float:
-    """What share of its means the mallet needs for the cubic from one state to another in a time; above 1: too much."""
+def effort(cubic: Way, reach: Reach) -> float:
+    """What share of its means the mallet needs for a way; above 1: too much."""
+    start, velocity, end, end_velocity, time = cubic
     total = 0.0
     for i in range(2):
         way = (end[i] - start[i]) / time
@@ -142,10 +170,9 @@ def effort(start: Array, velocity: Array, end: Array, end_velocity: Array, time:
 
 
 @compiled
-def touches_early(
-    path: Array, start: Array, velocity: Array, end: Array, end_velocity: Array, time: float, clearance: float
-) -> bool:
-    """Whether the cubic brings the mallet into the puck's way before it is there."""
+def touches_early(path: Array, cubic: Way, clearance: float) -> bool:
+    """Whether a way brings the mallet nearer to the puck than a clearance, in [m], before it is there. Path (k, 5)."""
+    start, velocity, end, end_velocity, time = cubic
     for k in range(1, int(time / STEP)):
         s = k * STEP / time
         distance = 0.0
@@ -162,19 +189,12 @@ def touches_early(
 
 @compiled
 def best_meeting(
-    path: Array,
-    bounces: Array,
-    since: Array,
-    tip: Array,
-    tip_velocity: Array,
-    reach: Reach,
-    wish: CatchCost,
-    present: int,
+    path: PuckPath, tip: Array, tip_velocity: Array, reach: Reach, wish: CatchCost, present: int
 ) -> tuple[int, float, float]:
     """The best point of a puck's path to catch it at.
 
     Args:
-        path, bounces, since: Of `puck_path`.
+        path: Of the puck.
         tip, tip_velocity: Of the mallet now, in [m] and [m]/[s]. Shapes (2,), (2,).
         reach: What the mallet can do.
         wish: What is good.
@@ -184,8 +204,8 @@ def best_meeting(
         Index into the path (−1: none), cost, effort.
     """
     best, best_cost, best_effort = -1, np.inf, np.inf
-    for i in range(2, len(path)):
-        state = path[i]
+    for i in range(2, len(path.states)):
+        state = path.states[i]
         if state[0] < wish.near_x or state[0] > wish.far_x:
             continue
         place, velocity = meeting(state, wish)
@@ -196,16 +216,17 @@ def best_meeting(
             continue
         time = max(i * STEP - wish.lead, 0.5 * STEP)
         begin = place - wish.lead * velocity
-        need = effort(tip, tip_velocity, begin, velocity, time, reach)
+        way = Way(tip, tip_velocity, begin, velocity, time)
+        need = effort(way, reach)
         speed = np.hypot(state[2], state[3])
         cost = wish.place * (state[0] - wish.best_x) ** 2 + wish.speed * speed
         cost += wish.deep * max(0.0, wish.deep_x - state[0])
         cost += wish.effort * max(0.0, need - wish.easy) ** 2
-        cost += wish.bounce * bounces[i]
-        if since[i] < wish.settle:
+        cost += wish.bounce * path.bounces[i]
+        if path.since[i] < wish.settle:
             cost += wish.sudden
         if abs(i - present) <= 1:
             cost -= wish.loyalty
-        if cost < best_cost and not touches_early(path, tip, tip_velocity, begin, velocity, time, 0.95 * CONTACT):
+        if cost < best_cost and not touches_early(path.states, way, 0.95 * CONTACT):
             best, best_cost, best_effort = i, cost, need
     return best, best_cost, best_effort

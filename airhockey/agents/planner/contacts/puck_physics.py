@@ -6,6 +6,7 @@ is the gap) and −b v along its tangent; forces f solve (J M⁻¹ Jᵀ + R) f =
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,23 +32,47 @@ _RIM_CONTACT = (0.0075, 0.1, 0.99, 0.999)
 _RIM_FRICTION = 1e4
 
 
+class Mallet(NamedTuple):
+    """Centre of a mallet, in [m], and how it moves, in [m]/[s]."""
+
+    x: float
+    y: float
+    velocity_x: float
+    velocity_y: float
+
+
+class Contacts(NamedTuple):
+    """What touches a puck.
+
+    Attributes:
+        normals: Unit vectors to the puck. Shape (3, 2).
+        gaps: Negative where they overlap, in [m]. Shape (3,).
+        moving: Velocity of what it touches, in [m]/[s]. Shape (3, 2).
+        mallet: Whether the first is the mallet's.
+        rows: How many of the rows count.
+    """
+
+    normals: Array
+    gaps: Array
+    moving: Array
+    mallet: bool
+    rows: int
+
+
 @compiled
-def step(
-    puck: Array, mallet_x: float, mallet_y: float, velocity_x: float, velocity_y: float, friction: float, rim: float
-) -> bool:
+def step(puck: Array, mallet: Mallet, friction: float, rim: float) -> bool:
     """Advance a puck by `TIME_STEP`, in place.
 
     Args:
         puck: x, y [m], ẋ, ẏ [m]/[s], yaw rate [rad]/[s], in the table frame. Shape (5,).
-        mallet_x, mallet_y: Centre of the mallet, in [m].
-        velocity_x, velocity_y: How it moves, in [m]/[s].
+        mallet: Where it is.
         friction: μ between mallet and puck.
         rim: Damping ratio of the rims, as a multiple of the nominal one.
 
     Returns:
         Whether the mallet touched the puck.
     """
-    away_x, away_y = puck[0] - mallet_x, puck[1] - mallet_y
+    away_x, away_y = puck[0] - mallet.x, puck[1] - mallet.y
     touched = away_x * away_x + away_y * away_y < _TOUCH * _TOUCH
     end = abs(puck[0]) > _HALF_X and abs(puck[1]) > _GOAL
     side = abs(puck[1]) > _HALF_Y
@@ -57,7 +82,7 @@ def step(
         if touched:
             distance = math.sqrt(away_x * away_x + away_y * away_y)
             normals[0, 0], normals[0, 1] = away_x / distance, away_y / distance
-            moving[0, 0], moving[0, 1], gaps[0] = velocity_x, velocity_y, distance - _TOUCH
+            moving[0, 0], moving[0, 1], gaps[0] = mallet.velocity_x, mallet.velocity_y, distance - _TOUCH
             count = 1
         if end:
             normals[count, 0], normals[count, 1] = -math.copysign(1.0, puck[0]), 0.0
@@ -67,7 +92,7 @@ def step(
             normals[count, 0], normals[count, 1] = 0.0, -math.copysign(1.0, puck[1])
             gaps[count] = _HALF_Y - abs(puck[1])
             count += 1
-        _push(puck, normals, gaps, moving, touched, count, friction, rim)
+        _push(puck, Contacts(normals, gaps, moving, touched, count), friction, rim)
     puck[2] *= _KEEP
     puck[3] *= _KEEP
     puck[4] *= _KEEP_SPIN
@@ -91,10 +116,9 @@ def put_on_table(puck: Array, gap: float) -> None:
 
 
 @compiled
-def _push(
-    puck: Array, normals: Array, gaps: Array, moving: Array, touched: bool, count: int, friction: float, rim: float
-) -> None:
-    """Add what the contacts (the mallet's first, if `touched`) do to the velocities: projected Gauss–Seidel over the forces."""
+def _push(puck: Array, contacts: Contacts, friction: float, rim: float) -> None:
+    """Add what the contacts do to the velocities: projected Gauss–Seidel over the forces."""
+    normals, gaps, moving, touched, count = contacts
     wanted, soft, forces = np.empty((3, 2)), np.empty(3), np.zeros((3, 2))
     for c in range(count):
         time_constant, ratio, low, high = _MALLET_CONTACT if (touched and c == 0) else _RIM_CONTACT

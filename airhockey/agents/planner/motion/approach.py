@@ -1,6 +1,7 @@
 """How the mallet gets to a place: briskly, to rest, and round the puck."""
 
 from math import hypot, sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,45 +16,51 @@ FORESIGHT = 0.12
 """How far ahead the puck is kept clear of, in [s]."""
 
 
+class Pace(NamedTuple):
+    """How the mallet goes to a place.
+
+    Attributes:
+        speed, acceleration: Largest, in [m]/[s] and [m]/[s²].
+        clearance: Gap to the puck, in [m].
+    """
+
+    speed: float
+    acceleration: float
+    clearance: float
+
+
 def approach(
-    tip: Array,
-    velocity: Array,
-    place: Array,
-    speed: float,
-    acceleration: float,
-    dt: float,
-    keep_off: Array | None,
-    clearance: float,
+    tip: Array, velocity: Array, place: Array, pace: Pace, dt: float, keep_off: Array | None
 ) -> tuple[Array, Array]:
     """The next step of the mallet towards a place.
 
     Args:
         tip, velocity: Of the mallet, in [m], [m]/[s]. Shapes (2,), (2,).
         place: Where it shall come to rest. Shape (2,).
-        speed: Largest, in [m]/[s].
-        acceleration: Largest, in [m]/[s²].
+        pace: How it goes there.
         dt: In [s].
         keep_off: Centre of the puck to keep clear of, or None. Shape (2,).
-        clearance: Gap to it, in [m].
 
     Returns:
         Position and velocity at the end of the step. Shapes (2,), (2,).
     """
     away = place - tip
-    distance = hypot(*away)
-    wanted = away * (min(speed, GAIN * distance, 0.85 * sqrt(2.0 * acceleration * distance)) / max(distance, 1e-9))
+    distance = hypot(*away.tolist())
+    wanted = away * (
+        min(pace.speed, GAIN * distance, 0.85 * sqrt(2.0 * pace.acceleration * distance)) / max(distance, 1e-9)
+    )
     if keep_off is not None:
-        wanted = _round(tip, wanted, place, keep_off, CONTACT + clearance)
+        wanted = _round(tip, wanted, place, keep_off, CONTACT + pace.clearance)
     change = wanted - velocity
-    largest = acceleration * dt
-    moving = velocity + change * min(1.0, largest / max(hypot(*change), 1e-9))
+    largest = pace.acceleration * dt
+    moving = velocity + change * min(1.0, largest / max(hypot(*change.tolist()), 1e-9))
     return tip + 0.5 * dt * (velocity + moving), moving
 
 
 def _round(tip: Array, wanted: Array, place: Array, puck: Array, distance: float) -> Array:
     """A velocity that slides along the circle about the puck instead of into it. Shape (2,)."""
     outwards = tip - puck
-    gap = hypot(*outwards)
+    gap = hypot(*outwards.tolist())
     outwards = outwards / max(gap, 1e-9)
     inwards = -float(wanted @ outwards)
     room = gap - distance

@@ -10,6 +10,9 @@ from airhockey.agents.table import CONTACT
 
 Array = NDArray[np.float64]
 
+TURN = 0.35
+"""How far along the circle round the puck to aim, in [rad]."""
+
 
 def drive(situation: Situation, velocity: Array, acceleration: float) -> Array:
     """One step towards a velocity of the mallet.
@@ -22,17 +25,23 @@ def drive(situation: Situation, velocity: Array, acceleration: float) -> Array:
     Returns:
         Joint command. Shape (2, n).
     """
-    tip, present = situation.tip, situation.tip_velocity
-    change = velocity - present
-    size = max(hypot(*change), 1e-9)
-    after = present + change * min(1.0, acceleration * situation.dt / size)
-    return situation.move(tip + 0.5 * situation.dt * (present + after), after)
+    (x, y), (present_x, present_y), (wanted_x, wanted_y) = (
+        situation.tip.tolist(),
+        situation.tip_velocity.tolist(),
+        velocity.tolist(),
+    )
+    change_x, change_y = wanted_x - present_x, wanted_y - present_y
+    share = min(1.0, acceleration * situation.dt / max(hypot(change_x, change_y), 1e-9))
+    after_x, after_y = present_x + change_x * share, present_y + change_y * share
+    half = 0.5 * situation.dt
+    place = np.array([x + half * (present_x + after_x), y + half * (present_y + after_y)])
+    return situation.move(place, np.array([after_x, after_y]))
 
 
 def go_to(situation: Situation, place: Array, speed: float, acceleration: float, gain: float = 10.0) -> Array:
     """One step towards a place, arriving at rest. In [m], [m]/[s], [m]/[s²], [1/s]. Shape (2, n)."""
     way = place - situation.tip
-    distance = max(hypot(*way), 1e-9)
+    distance = max(hypot(*way.tolist()), 1e-9)
     braking = sqrt(1.2 * acceleration * distance)  # leaves a reserve: 2 a d would need all of it
     return drive(situation, way / distance * min(speed, braking, gain * distance), acceleration)
 
@@ -45,9 +54,7 @@ def is_clear(start: Array, end: Array, puck: Array, clearance: float) -> bool:
     return hypot(*(start + share * way - puck)) >= clearance
 
 
-def round_the_puck(
-    tip: Array, place: Array, puck: Array, lower: Array, upper: Array, gap: float, turn: float = 0.35
-) -> Array:
+def round_the_puck(tip: Array, place: Array, puck: Array, lower: Array, upper: Array, gap: float) -> Array:
     """The next place to go to on a way that does not touch the puck.
 
     Straight to the place where that is clear; else along a circle about the puck, on the side where it stays on the table.
@@ -58,7 +65,6 @@ def round_the_puck(
         puck: Shape (2,).
         lower, upper: Where the mallet may be. Shape (2,).
         gap: Between mallet and puck on the way; less where the mallet starts or ends nearer.
-        turn: How far along the circle to aim, in [rad].
 
     Returns:
         Shape (2,).
@@ -77,5 +83,5 @@ def round_the_puck(
         outside = np.maximum(lower - circle, circle - upper).max(initial=0.0)
         ways.append((outside > 0.5 * gap, angle, sense))
     _, angle, sense = min(ways)
-    ahead = here + sense * min(turn, angle)
+    ahead = here + sense * min(TURN, angle)
     return np.asarray(np.clip(puck + radius * np.array([np.cos(ahead), np.sin(ahead)]), lower, upper))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
 from airhockey.agents.estimation.motion import bounce, slide
-from airhockey.agents.planner.contacts.puck_physics import TIME_STEP, clearance, step
+from airhockey.agents.planner.contacts.puck_physics import TIME_STEP, Mallet, clearance, step
 from airhockey.agents.table import CONTACT
 
 Array = NDArray[np.float64]
@@ -108,7 +108,7 @@ def puck_after(
             y, vy = mallet_at(push, 1, time)
             if math.hypot(x - state[0], y - state[1]) < 0.5 * CONTACT:  # squeezed out of all proportion
                 return state, True
-            if step(state, x, y, vx, vy, friction, rim) and time > push[FOLLOW] + 0.5 * push[RETREAT]:
+            if step(state, Mallet(x, y, vx, vy), friction, rim) and time > push[FOLLOW] + 0.5 * push[RETREAT]:
                 return state, True
         if abs(state[1]) < middle or state[0] > 0.0:
             break

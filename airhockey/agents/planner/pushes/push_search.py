@@ -46,21 +46,24 @@ DOUBTS = np.array(
 _RESTITUTION = 5  # place in the constants of `PuckMotion`
 
 
+_UNKNOWN = np.zeros(2)  # until it is known who plays
+
+
 class Goal(NamedTuple):
-    """What a push shall achieve, and with what means.
+    """What a push shall achieve (from `prepare.yaml`), and with what means (the robot's).
 
     Attributes:
         near_x, far_x, wide_y: The good places: x between the first two, |y| up to the third, in [m].
         slow: Largest ẋ with which the puck may come to the long axis, in [m]/[s].
         middle: How close to it the puck ends the task, in [m].
         margin: Distance to the border of the good places beyond which more is no better, in [m].
-        lower, upper: Where the mallet may be, in [m]. Shape (2,).
-        speed, acceleration: Largest along x and y, in [m]/[s] and [m]/[s²]. Shape (2,).
-        friction: μ between mallet and puck.
         doubt: How wrong the puck's place may be, in [m].
         haste: How wrong the mallet's speed may be, as a share.
         rim, rebound: How wrong the rims' damping ratio and restitution may be, as shares.
         horizon: For how long the puck may roll, in [s].
+        lower, upper: Where the mallet may be, in [m]. Shape (2,).
+        speed, acceleration: Largest along x and y, in [m]/[s] and [m]/[s²]. Shape (2,).
+        friction: μ between mallet and puck.
     """
 
     near_x: float
@@ -69,16 +72,16 @@ class Goal(NamedTuple):
     slow: float
     middle: float
     margin: float
-    lower: Array
-    upper: Array
-    speed: Array
-    acceleration: Array
-    friction: float
     doubt: float
     haste: float
     rim: float
     rebound: float
     horizon: float
+    lower: Array = _UNKNOWN
+    upper: Array = _UNKNOWN
+    speed: Array = _UNKNOWN
+    acceleration: Array = _UNKNOWN
+    friction: float = 1.0
 
 
 @compiled
@@ -185,23 +188,23 @@ def finish(push: Array, goal: Goal) -> None:
         push[END + i] = min(max(push[END + i], goal.lower[i]), goal.upper[i])
 
 
+class Found(NamedTuple):
+    """A push and its value; below −1: there is none yet."""
+
+    push: Array
+    value: float
+
+
 @compiled
-def search(
-    puck: Array,
-    best: Array,
-    best_value: float,
-    goal: Goal,
-    constants: Array,
-    rng: np.random.Generator,
-    tries: int,
-) -> tuple[Array, float]:
-    """Improve on a push. Returns the best one and its value. `best_value` below −1: there is none yet."""
+def search(puck: Array, found: Found, goal: Goal, constants: Array, rng: np.random.Generator, tries: int) -> Found:
+    """Improve on a push; gives the best one."""
+    best, best_value = found
     for _ in range(tries):
         local = best_value > -0.4 and rng.uniform(0.0, 1.0) < 0.5
         push = vary(best, puck, goal, rng) if local else draw(puck, goal, rng)
         if not possible(push, goal.lower, goal.upper, goal.speed, goal.acceleration):
             continue
-        found = value(puck, push, goal, constants, best_value)
-        if found > best_value:
-            best, best_value = push, found
-    return best, best_value
+        worth_of_it = value(puck, push, goal, constants, best_value)
+        if worth_of_it > best_value:
+            best, best_value = push, worth_of_it
+    return Found(best, best_value)

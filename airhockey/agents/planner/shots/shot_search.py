@@ -12,7 +12,7 @@ from airhockey.agents.planner.shots.flight import FLIGHT_STEP, coast, state_at
 from airhockey.agents.planner.shots.kinds import OPEN, Kind
 from airhockey.agents.planner.shots.parameters import SmashParameters
 from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
-from airhockey.agents.planner.shots.shots import Shot, judge
+from airhockey.agents.planner.shots.shots import Attempt, Keeper, Shot, judge
 from airhockey.agents.skill import Array, Situation
 from airhockey.envs.compiled import pack
 
@@ -106,7 +106,8 @@ def search(
     Args:
         path: The puck's predicted states at every `path_step` [s] from now. Shape (k, 5).
         path_step: In [s].
-        tip, opponent, doubt: As for `judge`.
+        tip: As for `judge`.
+        opponent, doubt: Of the `Keeper`.
         best: The best so far; its wait must have been brought up to date. Judged anew here.
         first: Number of candidates tried before: the candidates are a sequence of low discrepancy.
         count: How many to try.
@@ -117,19 +118,9 @@ def search(
     """
     model = packed[0]
     horizon = min(horizon, _safe_time(path, path_step, model))
-    best = judge(
-        state_at(path, path_step, best.wait),
-        best.wait,
-        best.aim,
-        best.wall,
-        tip,
-        opponent,
-        doubt,
-        -LENIENCE,
-        pace,
-        heeds,
-        model,
-    )
+    keeper = Keeper(opponent, doubt, heeds)
+    old = Attempt(best.wait, best.aim, best.wall, -LENIENCE)
+    best = judge(state_at(path, path_step, best.wait), old, tip, keeper, pace, model)
     if best.wait > horizon:
         best = Shot(0.0, best.wait, best.aim, best.wall, best.speed, best.normal, best.mallet)
     bar = best.value + improvement if best.value > 0.0 else 0.0
@@ -149,7 +140,7 @@ def search(
         if wait > horizon or wait < 0.0:
             continue
         puck = state_at(path, path_step, wait)
-        shot = judge(puck, wait, aim, wall, tip, opponent, doubt, model.approach_margin, pace, heeds, model)
+        shot = judge(puck, Attempt(wait, aim, wall, model.approach_margin), tip, keeper, pace, model)
         if shot.value > bar:
             best, bar = shot, shot.value
     return best

@@ -53,32 +53,55 @@ class Shot(NamedTuple):
     mallet: Array
 
 
+class Attempt(NamedTuple):
+    """What is tried.
+
+    Attributes:
+        wait, aim, wall: As in `Shot`.
+        margin: Time to spare that the way to the strike's beginning must leave, in [s].
+    """
+
+    wait: float
+    aim: float
+    wall: float
+    margin: float
+
+
+class Keeper(NamedTuple):
+    """Who guards the goal.
+
+    Attributes:
+        places: As `opponent` of `fly`. Shape (k, 2).
+        doubt: Standard deviation of where its mallet will be, in [m].
+        heeds: As in `kinds.Kind`.
+    """
+
+    places: Array
+    doubt: float
+    heeds: bool
+
+
+class Line(NamedTuple):
+    """Where and how the mallet strikes: `mallet`, `normal` and `speed` of a `Shot`."""
+
+    mallet: Array
+    normal: Array
+    speed: float
+
+
 @compiled
-def judge(
-    seen: Array,
-    wait: float,
-    aim: float,
-    wall: float,
-    tip: Array,
-    opponent: Array,
-    doubt: float,
-    margin: float,
-    pace: float,
-    heeds: bool,
-    model: ShotModel,
-) -> Shot:
+def judge(seen: Array, attempt: Attempt, tip: Array, keeper: Keeper, pace: float, model: ShotModel) -> Shot:
     """Work out a shot and its value.
 
     Args:
         seen: The puck's predicted state at contact. Shape (5,).
-        wait, aim, wall: As in `Shot`.
+        attempt: When to strike, and where to aim.
         tip: Where the mallet is now, in [m]. Shape (2,).
-        opponent: As for `fly`.
-        doubt: Standard deviation of where the opponent's mallet will be, in [m].
-        margin: Time to spare that the way to the strike's beginning must leave, in [s].
-        pace, heeds: As in `kinds.Kind`.
+        keeper: Who guards the goal.
+        pace: As in `kinds.Kind`.
         model: Constants.
     """
+    wait, aim, wall, margin = attempt
     nothing = Shot(0.0, wait, aim, wall, 0.0, np.zeros(2), np.zeros(2))
     if seen[0] > model.upper[0]:
         return nothing
@@ -98,9 +121,13 @@ def judge(
         normal = _towards(puck, target, max(speed, model.least_speed), model)
     mallet = puck[:2] - model.contact * normal
     spare = wait - margin
-    if speed < model.least_speed or normal[0] < FORWARD or not possible(mallet, normal, speed, spare, tip, puck, model):
+    if (
+        speed < model.least_speed
+        or normal[0] < FORWARD
+        or not possible(Line(mallet, normal, speed), spare, tip, puck, model)
+    ):
         return nothing  # before the flight, which costs most
-    goal, gap, length, passing = fly(_struck(puck, normal, speed, model), opponent, wait / FLIGHT_STEP, model)
+    goal, gap, length, passing = fly(_struck(puck, normal, speed, model), keeper.places, wait / FLIGHT_STEP, model)
     turns = 1.0 if rims % 2 == 0 else -1.0  # in an odd number of mirrors, left and right are swapped
     for _ in range(CORRECTIONS * rims):
         if not arrives(goal):
@@ -108,17 +135,17 @@ def judge(
         target += turns * (aim - goal) / model.restitution**rims
         normal = _towards(puck, target, speed, model)
         mallet = puck[:2] - model.contact * normal
-        if normal[0] < FORWARD or not possible(mallet, normal, speed, spare, tip, puck, model):
+        if normal[0] < FORWARD or not possible(Line(mallet, normal, speed), spare, tip, puck, model):
             return nothing
-        goal, gap, length, passing = fly(_struck(puck, normal, speed, model), opponent, wait / FLIGHT_STEP, model)
+        goal, gap, length, passing = fly(_struck(puck, normal, speed, model), keeper.places, wait / FLIGHT_STEP, model)
     value = 0.0
     if arrives(goal):
         spread = length * (model.direction_spread + rims * model.bounce_spread) + GRAIN
         late = model.timing_spread * passing
         # The way to the opponent is shorter than the whole flight, and it moves across the puck's way only in part.
-        apart = sqrt((0.8 * spread) ** 2 + (0.4 * late) ** 2 + doubt**2) + GRAIN
+        apart = sqrt((0.8 * spread) ** 2 + (0.4 * late) ** 2 + keeper.doubt**2) + GRAIN
         value = probability_within(goal, model.goal_half_width, spread)
-        if heeds:
+        if keeper.heeds:
             value *= probability_positive(gap, apart)
         value *= exp(-model.patience * wait)
     commanded = turned(normal, model.turn)
@@ -146,18 +173,17 @@ def room_speed(mallet: Array, normal: Array, model: ShotModel) -> float:
 
 
 @compiled
-def possible(
-    mallet: Array, normal: Array, speed: float, spare: float, tip: Array, puck: Array, model: ShotModel
-) -> bool:
+def possible(strike: Line, spare: float, tip: Array, puck: Array, model: ShotModel) -> bool:
     """Whether the strike stays inside the workspace, and the mallet can be where it begins in time.
 
     Args:
-        mallet, normal, speed: Of the strike, as in `Shot`.
+        strike: Where and how.
         spare: Time until contact, in [s].
         tip: Where the mallet is now, in [m]. Shape (2,).
         puck: At contact. Shape (5,).
         model: Constants.
     """
+    mallet, normal, speed = strike
     start = mallet - (0.5 * speed * speed / model.acceleration + speed * model.steady) * normal
     end = mallet + (speed * model.follow + 0.5 * speed * speed / model.braking) * normal
     for axis in range(2):

@@ -22,7 +22,7 @@ from airhockey.agents.planner.shots.aiming import strike_normal
 from airhockey.agents.planner.shots.flight import coast
 from airhockey.agents.planner.shots.parameters import smash_parameters
 from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
-from airhockey.agents.planner.shots.shots import FORWARD, Shot, possible, turned
+from airhockey.agents.planner.shots.shots import FORWARD, Line, Shot, possible, turned
 from airhockey.agents.planner.skills.striker import Striker
 from airhockey.agents.skill import Array, Situation
 from airhockey.agents.table import CONTACT
@@ -158,6 +158,6 @@ def roll(puck: Array, wait: float, place: Array, gain: float, tip: Array, margin
     mallet = puck[:2] - model.contact * normal
     side = 1.0 if place[1] > 0.0 else -1.0
     fits = puck[0] <= model.upper[0] and normal[0] > FORWARD
-    value = 1.0 if fits and possible(mallet, normal, speed, wait - margin, tip, puck, model) else 0.0
+    value = 1.0 if fits and possible(Line(mallet, normal, speed), wait - margin, tip, puck, model) else 0.0
     commanded = turned(normal, model.turn)
     return Shot(value, wait, place[1], side, speed, commanded, puck[:2] - model.contact * commanded)

@@ -34,33 +34,6 @@ class ReachParameters:
 
 
 @dataclass(frozen=True)
-class WishParameters:
-    """See `interception.CatchCost`."""
-
-    near_x: float
-    far_x: float
-    best_x: float
-    place: float
-    deep_x: float
-    deep: float
-    speed: float
-    effort: float
-    easy: float
-    bounce: float
-    settle: float
-    sudden: float
-    rest_x: float
-    standstill: float
-    push: float
-    return_speed: float
-    return_share: float
-    mouth: float
-    loyalty: float
-    lead: float
-    follow: float
-
-
-@dataclass(frozen=True)
 class DefendParameters:
     """What can be tuned about the defence: `defend.yaml` beside this module.
 
@@ -83,7 +56,7 @@ class DefendParameters:
 
     iiwa: ReachParameters
     planar: ReachParameters
-    wish: WishParameters
+    wish: CatchCost
     horizon: float
     too_hard: float
     every: int
@@ -130,7 +103,7 @@ class Defend:
         self._reach = Reach(
             np.array(means.speed), np.array(means.acceleration), to_table(workspace.lower), to_table(workspace.upper)
         )
-        self._wish = CatchCost(**vars(p.wish), grip=spec_of(env_info).n_joints == 7)
+        self._wish = p.wish._replace(grip=spec_of(env_info).n_joints == 7)
         self._constants = puck_motion().constants
         self._steps = round(p.horizon / STEP)
         self._meeting: Meeting | None = None
@@ -172,12 +145,12 @@ class Defend:
     def _find(self, puck: Array, tip: Array, tip_velocity: Array) -> Meeting | None:
         """The best meeting of all."""
         wish = self._wish
-        path, bounces, since = puck_path(puck, self._steps, wish.mouth, self._constants)
+        path = puck_path(puck, self._steps, wish.mouth, self._constants)
         present = round(self._meeting.time / STEP) if self._meeting is not None else -10
-        index, _, need = best_meeting(path, bounces, since, tip, tip_velocity, self._reach, wish, present)
+        index, _, need = best_meeting(path, tip, tip_velocity, self._reach, wish, present)
         if index < 0 or need > self._parameters.too_hard:
             return None
-        place, velocity = meeting(path[index], wish)
+        place, velocity = meeting(path.states[index], wish)
         return Meeting(place, velocity, index * STEP)
 
     def _refined(self, puck: Array, plan: Meeting) -> Meeting:
@@ -222,7 +195,7 @@ class Defend:
         p, puck = self._parameters, situation.puck
         if puck.velocity[0] > 0.0 and puck.position[0] < self._wish.far_x and puck.speed < p.overtake_speed:
             self.phase = "overtake"
-            ahead = situation.puck_at(p.overtake_time)[0][:2]
+            ahead = situation.puck_at(p.overtake_time)[:2]
             place = ahead + (CONTACT + p.clearance) * puck.velocity / max(puck.speed, 1e-6)
             place = np.clip(place, self._reach.lower, self._reach.upper)
             way = round_the_puck(

@@ -18,26 +18,9 @@ from airhockey.agents.planner.contacts.puck_physics import put_on_table
 from airhockey.agents.planner.estimation.rest_detection import RestDetection
 from airhockey.agents.planner.motion.driving import drive, go_to, round_the_puck
 from airhockey.agents.planner.pushes.push import END, FOLLOW, LENGTH, PLACE, RETREAT, RUN_UP, START, coast, mallet_at
-from airhockey.agents.planner.pushes.push_search import Goal, finish, search, value, worth
+from airhockey.agents.planner.pushes.push_search import Found, Goal, finish, search, value, worth
 from airhockey.agents.skill import Array, Situation
 from airhockey.agents.table import CONTACT, to_table
-
-
-@dataclass(frozen=True)
-class GoalParameters:
-    """See `push_search.Goal`."""
-
-    near_x: float
-    far_x: float
-    wide_y: float
-    slow: float
-    middle: float
-    margin: float
-    doubt: float
-    haste: float
-    rim: float
-    rebound: float
-    horizon: float
 
 
 @dataclass(frozen=True)
@@ -64,7 +47,7 @@ class PrepareParameters:
         drift: How far the puck may turn out to lie elsewhere than thought, in [m]; beyond, it is thought again.
     """
 
-    goal: GoalParameters
+    goal: Goal
     speed: tuple[float, ...]
     acceleration: tuple[float, ...]
     still: float
@@ -109,8 +92,7 @@ class Prepare:
         workspace = Workspace.of(env_info)
         self._lower, self._upper = to_table(workspace.lower), to_table(workspace.upper)
         self._upper[0] = min(self._upper[0], -0.1)
-        self._goal = Goal(
-            **vars(p.goal),
+        self._goal = p.goal._replace(
             lower=self._lower,
             upper=self._upper,
             speed=np.array(p.speed),
@@ -195,9 +177,8 @@ class Prepare:
         return np.asarray(self._puck[:2] - before)
 
     def _think(self, tries: int) -> None:
-        self._push, self._value = search(
-            self._puck, self._push, self._value, self._now, self._constants, self._rng, tries
-        )
+        found = Found(self._push, self._value)
+        self._push, self._value = search(self._puck, found, self._now, self._constants, self._rng, tries)
         self._tried += tries
 
     def _decided(self) -> bool:

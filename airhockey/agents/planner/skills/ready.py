@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from math import hypot
 from typing import Any
 
+from airhockey.agents.planner.motion.driving import drive
 from airhockey.agents.skill import Array, Situation
 from airhockey.agents.table import HOME
 
@@ -35,12 +36,7 @@ class Ready:
     def act(self, situation: Situation) -> Array:
         """See `Skill.act`."""
         away = self._place - situation.tip
-        distance = hypot(*away)
+        distance = hypot(*away.tolist())
         self.finished = distance < ARRIVED
         self.phase = "wait" if self.finished else "return"
-        wanted = away * min(GAIN, FULL_SPEED / max(distance, 1e-9))
-        change = wanted - situation.tip_velocity
-        largest = SHARPNESS * situation.dt
-        velocity = situation.tip_velocity + change * min(1.0, largest / max(hypot(*change), 1e-9))
-        target = situation.tip + 0.5 * situation.dt * (situation.tip_velocity + velocity)
-        return situation.move(target, velocity)
+        return drive(situation, away * min(GAIN, FULL_SPEED / max(distance, 1e-9)), SHARPNESS)

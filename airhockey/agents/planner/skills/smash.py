@@ -79,5 +79,5 @@ class Smash(Striker):
 
     def _look(self, situation: Situation) -> Array:
         self.phase = "look"
-        y = float(np.clip(situation.puck_at(0.3)[0][1], -0.3, 0.3))
+        y = float(np.clip(situation.puck_at(0.3)[1], -0.3, 0.3))
         return self.go(situation, np.array([GUARD, y]))

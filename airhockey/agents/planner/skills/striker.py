@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from airhockey.agents.planner.motion.approach import FORESIGHT, approach
+from airhockey.agents.planner.motion.approach import FORESIGHT, Pace, approach
 from airhockey.agents.planner.motion.strike import Strike, run_up
 from airhockey.agents.planner.shots.parameters import SmashParameters
 from airhockey.agents.planner.shots.shots import Shot
@@ -67,23 +67,15 @@ class Striker:
         """One step towards a place, round the puck. Shape (2, n)."""
         p = self._parameters
         ahead = situation.puck.position + FORESIGHT * situation.puck.velocity
-        target, velocity = approach(
-            situation.tip,
-            situation.tip_velocity,
-            place,
-            p.approach_speed,
-            p.approach_acceleration,
-            self._dt,
-            ahead,
-            p.clearance,
-        )
+        pace = Pace(p.approach_speed, p.approach_acceleration, p.clearance)
+        target, velocity = approach(situation.tip, situation.tip_velocity, place, pace, self._dt, ahead)
         return situation.move(target, velocity, self._anchor(situation))
 
     def _anchor(self, situation: Situation) -> Array | None:
         """What draws the joints to the stroke's posture; None where it has none. Shape (n,)."""
-        if len(self._posture) == 0:
+        q = situation.joints
+        if q is None or len(self._posture) == 0:
             return None
-        q = situation.controller.state.position
         return np.asarray(q + self._parameters.posture_gain * (self._posture - q))
 
     def _make_strike(self, situation: Situation, shot: Shot) -> Strike:

@@ -1,0 +1,60 @@
+"""MuJoCo's data as bytes, so that a simulation can be saved, restored, copied and sent to another process, to the bit.
+
+Saved is the beginning of the buffer of MuJoCo's data: positions, velocities, the solver's warm start, controls, the bodies'
+poses; and the time. What comes after them there, and contacts and forces, every step computes anew.
+"""
+
+import ctypes
+from typing import Any, NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+Bytes = NDArray[np.uint8]
+
+
+class PhysicsState(NamedTuple):
+    """A moment of the physics."""
+
+    buffer: Bytes
+    time: float
+
+
+class Physics:
+    """Saves and restores a model's data, which lives as long as this does.
+
+    Args:
+        data: MuJoCo's.
+    """
+
+    def __init__(self, data: mujoco.MjData) -> None:
+        self.data = data
+        self._buffer = _buffer_of(data)
+        self._counts = data.warning.number
+
+    def save(self) -> PhysicsState:
+        """The present moment, in memory of its own."""
+        return PhysicsState(self._buffer.copy(), self.data.time)
+
+    def restore(self, state: PhysicsState) -> None:
+        """Go to a moment that was saved from the same model, here or in another process."""
+        self._buffer[:] = state.buffer
+        self.data.time = state.time
+        self._counts.fill(0)  # a moment is saved of a healthy simulation; this one may have diverged since
+
+
+_SAVED = (
+    *("qpos", "qvel", "act", "qacc_warmstart", "ctrl", "qfrc_applied", "xfrc_applied", "qacc"),
+    *("xpos", "xquat", "xmat", "xipos", "ximat", "xanchor", "xaxis", "geom_xpos", "geom_xmat", "subtree_com"),
+)
+"""They stand at the beginning of the buffer, one after the other; what stands between them is saved, too."""
+
+
+def _buffer_of(data: Any) -> Bytes:
+    """The bytes from the positions, which come first, to the end of the last array that is saved."""
+    first = data.qpos.ctypes.data
+    size = max(
+        array.ctypes.data + array.nbytes - first for array in (getattr(data, name) for name in _SAVED) if array.size
+    )
+    return np.ctypeslib.as_array((ctypes.c_uint8 * size).from_address(first))

@@ -1,0 +1,85 @@
+"""One thread that looks at all isolated agents, ten times a second: who has other processes, who has too many or takes too
+much memory.
+
+Where the kernel counts for us (cgroups) it stops them at once; this watch is there for every other machine: an agent's processes
+are ended when together they hold more than the limit.
+"""
+
+import contextlib
+import os
+import signal
+import threading
+import time
+import weakref
+
+from airhockey.evaluator.isolation.process_tree import ProcessTree
+
+PERIOD = 0.1  # [s] between two looks
+
+
+class Watched:
+    """An agent under watch.
+
+    Args:
+        tree: Its processes.
+        memory: What they may hold together, in bytes.
+        processes: How many there may be.
+
+    Attributes:
+        waited: For how long they had been kept waiting for a core when they were last looked at, in [s].
+        excess: What they were ended for; None while they keep within the limit.
+    """
+
+    def __init__(self, tree: ProcessTree, memory: int, processes: int) -> None:
+        self.tree, self._memory, self._processes = tree, memory, processes
+        self.waited = 0.0
+        self.excess: str | None = None
+
+    def look(self) -> None:
+        """See who there is, and end all where they are too many or hold too much."""
+        self.tree.look()
+        self.waited = self.tree.waited()
+        if len(self.tree.others) >= self._processes:
+            self._end(f"it had more than {self._processes} processes")
+        elif self.tree.memory() > self._memory and self.tree.shared_memory_apart() > self._memory:
+            self._end(f"its processes together took more than {self._memory >> 20} MiB of memory")
+
+    def _end(self, excess: str) -> None:
+        self.excess = excess
+        for pid in (self.tree.top, self.tree.agent, *self.tree.others):  # with a sandbox's first all others end
+            with contextlib.suppress(OSError):
+                os.kill(pid, signal.SIGKILL)
+
+
+_all: "weakref.WeakSet[Watched]" = weakref.WeakSet()
+_lock = threading.Lock()
+_thread: threading.Thread | None = None
+
+
+def watch(agent: Watched) -> None:
+    """Look at an agent until nobody else knows it any more, or `forget` is called."""
+    global _thread
+    with _lock:
+        _all.add(agent)
+        if _thread is None or not _thread.is_alive():
+            _thread = threading.Thread(target=_look_at_all, name="memory watch", daemon=True)
+            _thread.start()
+
+
+def forget(agent: Watched) -> None:
+    """Look at an agent no longer: its number may soon be another's."""
+    with _lock:
+        _all.discard(agent)
+
+
+def _look_at_all() -> None:
+    global _thread
+    while True:
+        time.sleep(PERIOD)
+        with _lock:
+            if not _all:
+                _thread = None
+                return
+            for agent in list(_all):
+                with contextlib.suppress(OSError):
+                    agent.look()

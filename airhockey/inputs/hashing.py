@@ -1,0 +1,70 @@
+"""Inputs known by their content: SHA-256 of a file, or of everything in a folder that decides what it does.
+
+Two folders have the same hash when they hold the same files under the same names, wherever they lie. What tools leave in a
+folder (compiled modules, version control, the results of runs) does not count.
+"""
+
+import hashlib
+import os
+import stat
+from collections.abc import Iterator
+from pathlib import Path
+
+from airhockey.errors import ConfigurationError
+from airhockey.inputs.names import shown
+
+TOOLS = frozenset(
+    (
+        "__pycache__", "build", "dist", "runs", "node_modules", ".git", ".hg", ".venv", ".mypy_cache", ".pytest_cache",
+        ".ruff_cache", ".ipynb_checkpoints", ".idea", ".vscode", ".DS_Store",
+    )
+)  # fmt: skip
+"""What tools make, and no agent reads."""
+RESULTS = ("run.json", "match.json", "tournament.json", "train.json")
+"""A folder with one of these is a run's."""
+
+
+def content_hash(path: str | os.PathLike[str]) -> str:
+    """SHA-256 of a file's bytes, or of a folder's names and bytes, in hexadecimal.
+
+    Raises:
+        ConfigurationError: There is no such file, it cannot be read, or a folder holds a link or a device.
+    """
+    place = Path(path)
+    try:
+        if not place.is_dir():
+            return _file_hash(place)
+        whole = hashlib.sha256()
+        for name, file in sorted((file.relative_to(place).as_posix(), file) for file in files_of(place)):
+            whole.update(os.fsencode(name) + b"\0" + bytes.fromhex(_file_hash(file)))
+        return whole.hexdigest()
+    except OSError as error:
+        raise ConfigurationError(f"cannot read {os.fspath(path)!r}: {error.strerror}") from None
+
+
+def files_of(folder: Path) -> Iterator[Path]:
+    """The files of a folder and its sub-folders that count.
+
+    Raises:
+        ConfigurationError: There is a link, a pipe or a device.
+    """
+    with os.scandir(folder) as entries:
+        there = sorted(entries, key=lambda entry: entry.name)
+    if any(entry.name in RESULTS for entry in there):
+        return
+    for entry in there:
+        if entry.name in TOOLS or entry.name.endswith((".pyc", ".pyo", ".egg-info")):
+            continue
+        kind = entry.stat(follow_symlinks=False).st_mode
+        if stat.S_ISDIR(kind):
+            yield from files_of(Path(entry.path))
+        elif stat.S_ISREG(kind):
+            yield Path(entry.path)
+        else:
+            what = "a link" if stat.S_ISLNK(kind) else "neither a file nor a folder"
+            raise ConfigurationError(f"{shown(entry.path)!r} is {what}; put the file itself there")
+
+
+def _file_hash(file: Path) -> str:
+    with file.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()

@@ -1,0 +1,373 @@
+"""Entries that want a better result than their play deserves: time for nothing, and knowledge of the future."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import product
+from verdicts import ESCAPE, HANG, HELD, LEFTOVER, TRACEBACK, Verdict
+
+LIMIT = 0.02
+"""What an answer may take, in [s]: every cheat below takes more, and is caught where this is seen."""
+HEAD = """
+import os, random, signal, subprocess, sys, threading, time
+import numpy as np
+from airhockey.agents import build_agent as build
+
+def compute(seconds, clock=time.process_time):
+    end = clock() + seconds
+    while clock() < end:
+        pass
+
+class Base:
+    interpolation_order = 3
+    def __init__(self, env_info, **kwargs):
+        self.agent = build("hold", env_info, kwargs.get("agent_id", 1))
+        self.steps = 0
+    def episode_start(self):
+        self.agent.episode_start()
+    def draw_action(self, observation):
+        self.steps += 1
+        self.cheat(observation)
+        return self.agent.draw_action(observation)
+    def cheat(self, observation):
+        pass
+
+def frames():
+    frame = sys._getframe()
+    while frame:
+        yield frame
+        frame = frame.f_back
+"""
+TAIL = """
+def build_agent(env_info, **kwargs):
+    return Agent(env_info, **kwargs)
+"""
+
+
+@dataclass(frozen=True)
+class Cheat:
+    """An entry that computes too long.
+
+    Attributes:
+        code: Its class `Agent`.
+        clock: Which clock it wants to deceive.
+    """
+
+    code: str
+    clock: str = "cpu"
+
+
+TIME = {
+    "work in a child": Cheat("""
+class Agent(Base):
+    def __init__(self, env_info, **kwargs):
+        super().__init__(env_info, **kwargs)
+        self.done, done = os.pipe()
+        asked, self.asked = os.pipe()
+        if os.fork() == 0:
+            while os.read(asked, 1):
+                compute(0.06)
+                os.write(done, b"x")
+            os._exit(0)
+    def cheat(self, observation):
+        os.write(self.asked, b"x")
+        os.read(self.done, 1)
+"""),
+    "work in a grandchild that nobody waits for": Cheat("""
+class Agent(Base):
+    def __init__(self, env_info, **kwargs):
+        super().__init__(env_info, **kwargs)
+        self.done, done = os.pipe()
+        asked, self.asked = os.pipe()
+        if os.fork() == 0:
+            os.setsid()
+            if os.fork() == 0:
+                while os.read(asked, 1):
+                    compute(0.06)
+                    os.write(done, b"x")
+            os._exit(0)
+        os.wait()
+    def cheat(self, observation):
+        os.write(self.asked, b"x")
+        os.read(self.done, 1)
+"""),
+    "a new child for every step": Cheat("""
+class Agent(Base):
+    def cheat(self, observation):
+        child = os.fork()
+        if child == 0:
+            compute(0.06)
+            os._exit(0)
+        os.waitpid(child, 0)
+"""),
+    "children that nobody waits for": Cheat("""
+class Agent(Base):
+    def __init__(self, env_info, **kwargs):
+        super().__init__(env_info, **kwargs)
+        signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    def cheat(self, observation):
+        reader, writer = os.pipe()
+        if os.fork() == 0:
+            compute(0.06)
+            os.write(writer, b"x")
+            os._exit(0)
+        os.read(reader, 1)
+        os.close(reader)
+        os.close(writer)
+        time.sleep(0.005)
+"""),
+    "a program for every step": Cheat("""
+class Agent(Base):
+    def cheat(self, observation):
+        subprocess.run([sys.executable, "-ISc", "import time\\nwhile time.process_time() < 0.06: pass"], check=True)
+"""),
+    "work in threads": Cheat("""
+class Agent(Base):
+    def cheat(self, observation):
+        threads = [threading.Thread(target=compute, args=(0.06,)) for _ in range(2)]
+        [thread.start() for thread in threads]
+        [thread.join() for thread in threads]
+"""),
+    "a thread that works between the steps": Cheat("""
+class Agent(Base):
+    def __init__(self, env_info, **kwargs):
+        super().__init__(env_info, **kwargs)
+        threading.Thread(target=self.work, daemon=True).start()
+    def work(self):
+        while True:
+            compute(1.0)
+    def cheat(self, observation):
+        if self.steps % 5 == 0:
+            time.sleep(0.06)
+"""),
+    "sleep at every step": Cheat("""
+class Agent(Base):
+    def cheat(self, observation):
+        if self.steps % 5 == 0:
+            time.sleep(0.3)
+"""),
+    "wait for a file that never comes": Cheat("""
+class Agent(Base):
+    def cheat(self, observation):
+        if self.steps % 5 == 0:
+            end = time.monotonic() + 0.3
+            while time.monotonic() < end and not os.path.exists("/tmp/never"):
+                time.sleep(0.0002)
+"""),
+    "replies written in advance": Cheat("""
+class Agent(Base):
+    def draw_action(self, observation):
+        self.steps += 1
+        action = self.agent.draw_action(observation)
+        if self.steps == 1:
+            for frame in frames():
+                for value in list(frame.f_locals.values()):
+                    if hasattr(value, "write_action"):
+                        value.write_action(action)
+            for fd in range(3, 64):
+                try:
+                    os.set_blocking(fd, False)
+                    os.write(fd, b"K" * 60000)
+                except OSError:
+                    pass
+                try:
+                    os.set_blocking(fd, True)
+                except OSError:
+                    pass
+        compute(0.05)
+        return action
+"""),
+    "replies written by a thread": Cheat("""
+class Agent(Base):
+    def __init__(self, env_info, **kwargs):
+        super().__init__(env_info, **kwargs)
+        threading.Thread(target=self.reply, daemon=True).start()
+    def reply(self):
+        while True:
+            time.sleep(0.001)
+            for fd in range(3, 64):
+                try:
+                    if not os.get_blocking(fd) or "pipe" in os.readlink(f"/proc/self/fd/{fd}"):
+                        os.write(fd, b"K")
+                except OSError:
+                    pass
+    def cheat(self, observation):
+        compute(0.05)
+"""),
+    "the reply first, the work afterwards": Cheat("""
+class Agent(Base):
+    def draw_action(self, observation):
+        self.steps += 1
+        action = self.agent.draw_action(observation)
+        if self.steps == 2:
+            for frame in frames():
+                server = frame.f_locals.get("self")
+                if type(server).__name__ == "Server":
+                    whole = type(server).answer
+                    def answer(self, word, *rest, whole=whole):
+                        threading.Thread(target=compute, args=(0.05,)).start()
+                        return whole(self, word, *rest)
+                    type(server).answer = answer
+        return action
+"""),
+    "a clock of its own": Cheat("""
+class Agent(Base):
+    def cheat(self, observation):
+        began = time.process_time()
+        time.perf_counter = time.process_time = time.thread_time = time.monotonic = lambda: 0.0
+        for _ in range(20):
+            sum(range(200_000))
+"""),
+    "computing in preprocessors": Cheat("""
+class Agent(Base):
+    def __init__(self, env_info, **kwargs):
+        super().__init__(env_info, **kwargs)
+        self.preprocessors = [self.prepare]
+    def prepare(self, observation):
+        compute(0.06)
+        return observation
+"""),
+}
+WAITS = {
+    "a builder that takes its time": """
+class Agent(Base):
+    def __init__(self, env_info, **kwargs):
+        super().__init__(env_info, **kwargs)
+        time.sleep(1000)
+""",
+    "a start of an episode that takes its time": """
+class Agent(Base):
+    def episode_start(self):
+        super().episode_start()
+        compute(40.0, time.monotonic)
+""",
+    "a start of an episode that sleeps": """
+class Agent(Base):
+    def episode_start(self):
+        super().episode_start()
+        time.sleep(40.0)
+""",
+    "steps just within the patience": """
+class Agent(Base):
+    def cheat(self, observation):
+        time.sleep(3.0)
+""",
+}
+"""Entries that make others wait: with a patience of 4 s, all of it must end soon, and be on record."""
+ORACLE = """
+import zlib
+from airhockey import envs
+
+def words():
+    for frame in frames():
+        for value in frame.f_locals.values():
+            if isinstance(value, dict) and "seed" in value:
+                return value["seed"]
+    return None
+
+class Agent(Base):
+    def __init__(self, env_info, **kwargs):
+        super().__init__(env_info, **kwargs)
+        self.told = [words()]
+        self.state = np.random.get_state()[1][:8].copy()
+        self.env = envs.make("3dof-hit", 3)
+        self.found = None
+    def episode_start(self):
+        super().episode_start()
+        self.told.append(words())
+        self.drawn = np.random.get_state()[1].copy()
+        self.steps = 0
+    def cheat(self, observation):
+        if self.steps != 1:
+            return
+        spawn = (zlib.crc32(b"3dof-hit"), 0)
+        for seed in range(3000):
+            for owner in (0, 1, 2):
+                there = np.random.SeedSequence(seed, spawn_key=(*spawn, owner)).generate_state(4)
+                np.random.seed(there)
+                if any(told is not None and list(told)[:4] == there.tolist() for told in self.told) or (
+                    (np.random.get_state()[1] == self.drawn).all()
+                ):
+                    print("@@FOUND", seed, owner, flush=True)
+                    return
+"""
+
+
+def attack(sample: bool) -> Iterator[Verdict]:
+    """Play with each cheat, and look at what is on record."""
+    for name, cheat in list(TIME.items())[: 3 if sample else None]:
+        yield _played("cheats with time", name, cheat.code, cheat.clock)
+    if not sample:
+        for name, code in WAITS.items():
+            yield _waited("entries that make others wait", name, code)
+    for seed in ("7", "random"):
+        yield _foreseen("knowing the future", f"from its own seed, --seed {seed}", seed)
+
+
+def _played(kind: str, name: str, code: str, clock: str) -> Verdict:
+    """A cheat is caught where its longest answer is known to be too long, or where it is thrown out."""
+    with product.fresh_place() as place:
+        entry = make_entry(place.path, code)
+        done = place.hockey(
+            *("evaluate", "--env", "3dof-hit", "--agent", str(entry), "--episodes", "1", "--jobs", "1"),
+            *("--clock", clock, "--seed", "1", "--json", "--quiet", "--out", "run"),
+        )
+        bad = trouble(kind, name, done)
+        if bad is not None:
+            return bad
+        if done.status == 3:
+            return Verdict(kind, name, HELD, "thrown out")
+        longest = json.loads(done.out)["computation_time"]["max"]
+        return Verdict(kind, name, HELD if longest > LIMIT else ESCAPE, f"longest answer {longest * 1e3:.1f} ms")
+
+
+def _waited(kind: str, name: str, code: str) -> Verdict:
+    with product.fresh_place() as place:
+        entry = make_entry(place.path, code)
+        done = place.hockey(
+            *("evaluate", "--env", "3dof-hit", "--agent", str(entry), "--episodes", "1", "--jobs", "1"),
+            *("--patience", "4", "--seed", "1", "--quiet", "--out", "run"),
+            patience=400.0,
+        )
+        bad = trouble(kind, name, done)
+        if bad is not None:
+            return bad
+        return Verdict(kind, name, HELD if done.status == 3 else ESCAPE, product.last_line(done))
+
+
+def _foreseen(kind: str, name: str, seed: str) -> Verdict:
+    with product.fresh_place() as place:
+        entry = make_entry(place.path, ORACLE)
+        done = place.hockey(
+            *("evaluate", "--env", "3dof-hit", "--agent", str(entry), "--episodes", "1", "--jobs", "1"),
+            *("--seed", seed, "--quiet", "--out", "run"),
+        )
+        bad = trouble(kind, name, done)
+        if bad is not None:
+            return bad
+        if done.status not in (0, 3):
+            return Verdict(kind, name, ESCAPE, product.last_line(done))
+        found = [line for line in done.err.splitlines() if "@@FOUND" in line]
+        return Verdict(kind, name, ESCAPE if found else HELD, *found[:1])
+
+
+def trouble(kind: str, name: str, done: product.Done) -> Verdict | None:
+    """What is wrong with how a command ended, whatever it was to do."""
+    if done.status is None:
+        return Verdict(kind, name, HANG, product.last_line(done))
+    if done.has_traceback:
+        return Verdict(kind, name, TRACEBACK, product.last_line(done))
+    if done.leftovers:
+        return Verdict(kind, name, LEFTOVER, ", ".join(done.leftovers))
+    return None
+
+
+def make_entry(place: Path, code: str) -> Path:
+    """An entry's folder with this class `Agent`."""
+    entry = place / "entry"
+    entry.mkdir()
+    (entry / "agent_builder.py").write_text(HEAD + code + TAIL)
+    (entry / "submission.yaml").write_text("name: entry\nversion: 0.1.0\ninterpolation_order: 3\ntasks: [3dof-hit]\n")
+    return entry

@@ -1,0 +1,62 @@
+"""Contents, known by their hashes."""
+
+import hashlib
+import os
+from pathlib import Path
+
+import pytest
+
+from airhockey.errors import ConfigurationError
+from airhockey.inputs.hashing import content_hash
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    place = tmp_path / "agent"
+    (place / "parts").mkdir(parents=True)
+    (place / "agent_builder.py").write_text("x = 1\n")
+    (place / "parts" / "weights.bin").write_bytes(bytes(100))
+    return place
+
+
+def test_a_files_hash_is_its_sha256(folder: Path) -> None:
+    file = folder / "agent_builder.py"
+    assert content_hash(file) == hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def test_a_folder_is_its_names_and_bytes_wherever_it_lies(folder: Path, tmp_path: Path) -> None:
+    before = content_hash(folder)
+    moved = folder.rename(tmp_path / "elsewhere")
+    assert content_hash(moved) == before
+    for name in ("__pycache__", ".git", "runs"):
+        (moved / name).mkdir()
+        (moved / name / "more").write_text("x")
+    (moved / "result").mkdir()
+    (moved / "result" / "run.json").write_text("{}")
+    (moved / "result" / "journal.jsonl").write_text("{}")
+    assert content_hash(moved) == before
+
+
+def test_every_change_shows(folder: Path) -> None:
+    seen = {content_hash(folder)}
+    (folder / "agent_builder.py").write_text("x = 2\n")
+    seen.add(content_hash(folder))
+    (folder / "parts" / "weights.bin").rename(folder / "weights.bin")
+    seen.add(content_hash(folder))
+    (folder / "empty.txt").touch()
+    seen.add(content_hash(folder))
+    (folder / "parts" / "empty.txt").touch()
+    seen.add(content_hash(folder))
+    assert len(seen) == 5
+
+
+def test_links_and_pipes_are_refused_by_name(folder: Path) -> None:
+    (folder / "parts" / "borrowed.bin").symlink_to("/etc/passwd")
+    with pytest.raises(ConfigurationError, match=r"borrowed.bin' is a link"):
+        content_hash(folder)
+    (folder / "parts" / "borrowed.bin").unlink()
+    os.mkfifo(folder / "pipe")
+    with pytest.raises(ConfigurationError, match=r"pipe' is neither"):
+        content_hash(folder)
+    with pytest.raises(ConfigurationError, match="No such file"):
+        content_hash(folder / "missing")

@@ -1,0 +1,1 @@
+from .agent_base import AgentBase as AgentBase

@@ -179,4 +179,6 @@ def test_an_event_of_an_old_journal_has_no_points_and_one_without_points_is_writ
     event = msgspec.json.decode(line, type=Event)
     assert event.points == 0.0
     assert msgspec.json.encode(event) == line
-    assert msgspec.json.decode(msgspec.json.encode(msgspec.structs.replace(event, points=2.5)), type=Event).points == 2.5
+    assert (
+        msgspec.json.decode(msgspec.json.encode(msgspec.structs.replace(event, points=2.5)), type=Event).points == 2.5
+    )

@@ -5,7 +5,7 @@ import numpy as np
 from airhockey.envs.specs import CONTROL_PERIOD, TABLE
 from airhockey.reporting import words
 from airhockey.reporting.blocks import details, figure, figures, paragraphs, table
-from airhockey.reporting.draw.distribution import Series, histogram, round_edges, rows_of
+from airhockey.reporting.draw.distribution import Axes, Series, histogram, round_edges, rows_of
 from airhockey.reporting.draw.table_map import cells, density_cells, points, table_map
 from airhockey.reporting.episodes import Margins, TaskData
 from airhockey.reporting.markup import Markup, element, joined
@@ -41,12 +41,9 @@ def _margins(name: str, margins: Margins) -> Markup:
         histogram(
             edges,
             [Series("kept", kept, "a"), Series("violated", violated, "bad")],
-            f"{unit} beyond the limit (negative: room left)",
-            "steps",
+            Axes(f"{unit} beyond the limit (negative: room left)", "steps", log_y=True, include=0.0),
             f"Margin of {words.constraint(name)} against its limit in {len(values)} steps: {says}.",
-            log_y=True,
             rules=[(0.0, "limit")],
-            include=0.0,
         ),
         data=table(f"Steps by value of {name}", (unit or "value", "steps"), rows),
     )
@@ -95,7 +92,10 @@ def _violation_times(violated: dict[str, Margins]) -> Markup:
     return figure(
         "Constraints violated: when",
         histogram(
-            edges, series, "s since the start", "steps", "Violating steps by the time since the episode's start."
+            edges,
+            series,
+            Axes("s since the start", "steps"),
+            "Violating steps by the time since the episode's start.",
         ),
         legend=[(one.class_, words.constraint(one.name)) for one in series],
         data=table("Violating steps by time in s", ("s", *(words.constraint(one.name) for one in series)), rows),

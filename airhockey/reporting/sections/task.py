@@ -9,7 +9,7 @@ from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.evaluator.judging.tasks import wilson_interval
 from airhockey.reporting import words
 from airhockey.reporting.blocks import figure, figures, paragraphs, section, table
-from airhockey.reporting.draw.distribution import Series, histogram, log_edges, round_edges, rows_of
+from airhockey.reporting.draw.distribution import Axes, Series, histogram, log_edges, round_edges, rows_of
 from airhockey.reporting.draw.table_map import SHADES, Cell, cells, crosses, table_map
 from airhockey.reporting.episodes import TaskData
 from airhockey.reporting.markup import Markup, element, joined
@@ -101,8 +101,7 @@ def _hits(data: TaskData) -> Markup:
         histogram(
             edges,
             [Series("success", won, "good"), Series("no success", lost, "bad")],
-            "m/s",
-            f"hits ({speed.size:,}, {per_episode:.2f} per episode)",
+            Axes("m/s", f"hits ({speed.size:,}, {per_episode:.2f} per episode)"),
             title,
             rules=[(middle, f"median {middle:.2f}")],
         ),
@@ -128,11 +127,8 @@ def _times(data: TaskData) -> Markup:
         histogram(
             edges,
             [Series("in time", within, "a"), Series("too late", beyond, "bad")],
-            "ms",
-            "steps",
+            Axes("ms", "steps", log_x=True, log_y=True),
             title,
-            log_x=True,
-            log_y=True,
             rules=[(1e3 * TIME_LIMIT, "20 ms")],
         ),
         data=table("Steps by time of draw_action", ("ms", "steps"), rows),

@@ -191,4 +191,4 @@ def _seen_from_home(record: GameRecord, swapped: bool) -> GameResult:
 def _swapped(event: Event) -> Event:
     who: Side | None = None if event.who is None else ("away" if event.who == "home" else "home")
     score = None if event.score is None else (event.score[1], event.score[0])
-    return Event(step=event.step, what=event.what, who=who, score=score, why=event.why)
+    return msgspec.structs.replace(event, who=who, score=score)

@@ -48,7 +48,7 @@ class GameNarrator:
             if event.who is not None and event.what in ("fault", "violation"):
                 k = SIDES.index(event.who)
                 faults[k] += event.what == "fault"
-                penalty[k] += points_of(event)
+                penalty[k] += event.points
             counts.append((event.step, score, (faults[0], faults[1]), (penalty[0], penalty[1])))
         object.__setattr__(self, "_counts", counts)
 
@@ -120,14 +120,3 @@ def moment_of(event: Event, players: Sequence[str]) -> Moment:
         "violation": f"{name} violates {(event.why or 'a constraint').partition(':')[0]}",
     }
     return Moment(event.step, event.what, k, texts.get(event.what, event.what))
-
-
-def points_of(event: Event) -> float:
-    """Penalty points of a violation, which stand in its reason: "NAME: POINTS points for this episode, …"."""
-    if event.what != "violation" or event.why is None:
-        return 0.0
-    number = event.why.partition(": ")[2].partition(" ")[0]
-    try:
-        return float(number)
-    except ValueError:
-        return 0.0

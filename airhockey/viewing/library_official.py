@@ -7,18 +7,21 @@ import io
 import pickle
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs import ENVIRONMENTS
+from airhockey.envs.specs import IIWA
 from airhockey.errors import ConfigurationError
-from airhockey.viewing.library import Entry, Library
-
-if TYPE_CHECKING:
-    from airhockey.viewing.recording import Recording
+from airhockey.viewing.entries import Entry, Library
+from airhockey.viewing.episodes import Outcome, episode_recording
+from airhockey.viewing.games import game_recording
+from airhockey.viewing.recording import Recording
 
 Array = NDArray[np.float64]
+DATASET = "dataset.pkl"
 ADMITTED = frozenset(
     {
         ("builtins", name)
@@ -88,8 +91,6 @@ def add_datasets(library: Library, paths: Sequence[Path]) -> None:
 
 
 def _add(library: Library, path: Path, several: bool) -> None:
-    from airhockey.envs import ENVIRONMENTS
-
     try:
         episodes = episodes_of(read_dataset(path))
         width = episodes[0].shape[1]
@@ -107,11 +108,8 @@ def _add(library: Library, path: Path, several: bool) -> None:
         library.entries.append(Entry(name, _loader(name, env, seen)))
 
 
-def _loader(name: str, env: str, seen: Array) -> "Callable[[], Recording]":
-    def load() -> "Recording":
-        from airhockey.viewing.episodes import Outcome, episode_recording
-        from airhockey.viewing.games import game_recording
-
+def _loader(name: str, env: str, seen: Array) -> Callable[[], Recording]:
+    def load() -> Recording:
         if env == "tournament":
             return game_recording(name, in_world(seen), None)
         return episode_recording(name, env, "recorded agent", {"observations": seen}, Outcome())
@@ -121,8 +119,6 @@ def _loader(name: str, env: str, seen: Array) -> "Callable[[], Recording]":
 
 def in_world(seen: Array) -> Array:
     """Both players' observations as base observations, as films hold them. Shapes (T, 46)."""
-    from airhockey.envs.specs import IIWA
-
     base, n = np.array(IIWA.base_positions[0]), IIWA.n_joints
     rows = seen.reshape(len(seen), 2, -1).copy()
     rows[:, 1, 0:6] = rows[:, 0, 0:6]

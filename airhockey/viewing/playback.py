@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from airhockey.envs.specs import TABLE
 from airhockey.viewing.caption import Caption
-from airhockey.viewing.library import Entry
+from airhockey.viewing.entries import Entry
 from airhockey.viewing.marks import PREDICTED, Mark, path
 from airhockey.viewing.recording import Recording
 from airhockey.viewing.scene_view import SceneView

@@ -9,8 +9,8 @@ import numpy as np
 
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.errors import ConfigurationError
+from airhockey.viewing.entries import Entry
 from airhockey.viewing.highlights import frame_steps, highlight_spans
-from airhockey.viewing.library import Entry
 from airhockey.viewing.recording import Recording
 from airhockey.viewing.video_writer import MOST_GIF_FRAMES, VideoWriter, check_video, open_video
 

@@ -41,7 +41,7 @@ def test_captions_count_what_the_referee_noted() -> None:
     why = "ee_constr: 3 points for this episode, up to 0.01 beyond"
     events = (
         Event(step=0, what="serve", who="home", score=(0, 0)),
-        Event(step=10, what="violation", who="away", why=why),
+        Event(step=10, what="violation", who="away", why=why, points=3.0),
         Event(step=20, what="goal", who="home", score=(1, 0)),
         Event(step=20, what="serve", who="away", score=(1, 0)),
         Event(step=200, what="fault", who="home", score=(1, 0)),

@@ -12,7 +12,8 @@ from command_line import Hockey
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.runs import trajectories
 from airhockey.evaluator.runs.game_trajectories import read_film
-from airhockey.viewing.library import Library, open_library
+from airhockey.viewing.entries import Library
+from airhockey.viewing.library import open_library
 from airhockey.viewing.library_official import in_world
 from airhockey.viewing.recording import Recording
 

@@ -71,5 +71,6 @@ class Penalties:
             else:
                 first, what = int(times.argmax()), f"up to {longest * 1e3:.1f} ms, {mean * 1e3:.1f} ms on average"
             why = f"{name}: {charged:g} points for this episode, {what}"
-            events.append(Event(step=step - seen + 1 + first, what="violation", who=self._seat.side, why=why))
+            at, who = step - seen + 1 + first, self._seat.side
+            events.append(Event(step=at, what="violation", who=who, why=why, points=charged))
         return events

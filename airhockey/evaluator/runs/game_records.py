@@ -104,6 +104,7 @@ class Event(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
         who: The side it is about.
         score: After it, home and away.
         why: What made the referee or the judge say so.
+        points: Penalty points of a violation; 0 also in journals that are older than this field.
     """
 
     step: int
@@ -111,6 +112,7 @@ class Event(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     who: Side | None = None
     score: tuple[int, int] | None = None
     why: str | None = None
+    points: float = 0.0
 
 
 class PlayerResult(msgspec.Struct, frozen=True, kw_only=True):

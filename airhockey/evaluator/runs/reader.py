@@ -3,6 +3,9 @@
 A folder may belong to a run that is still being played, that was killed, that lost a file, or to somebody else altogether.
 """
 
+import contextlib
+import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -14,7 +17,8 @@ from airhockey.errors import ConfigurationError
 from airhockey.evaluator.match import MatchOptions
 from airhockey.evaluator.runs import trajectories
 from airhockey.evaluator.runs.game_records import GameRecord, file_name
-from airhockey.evaluator.runs.journal import read_journal
+from airhockey.evaluator.runs.journal import NAME as JOURNAL
+from airhockey.evaluator.runs.journal import Record, read_journal
 from airhockey.evaluator.runs.manifest import MATCH, RUN, TOURNAMENT, Manifest, read_manifest
 from airhockey.evaluator.runs.records import EpisodeRecord, Job, Options
 from airhockey.evaluator.runs.trajectories import TRAJECTORIES
@@ -71,11 +75,16 @@ class Run(_Folder[Options]):
 
     Attributes:
         records: Of the finished episodes.
-        files: Trajectory files that can be read.
+        stored: The file that holds an episode's trajectory, for those of which it can be read.
     """
 
     records: list[EpisodeRecord] = field(default_factory=list)
-    files: list[Path] = field(default_factory=list)
+    stored: dict[Job, Path] = field(default_factory=dict)
+
+    @property
+    def files(self) -> list[Path]:
+        """Trajectory files that can be read."""
+        return list(dict.fromkeys(self.stored.values()))
 
     @property
     def agent(self) -> str:
@@ -95,13 +104,18 @@ class Run(_Folder[Options]):
 
 @dataclass
 class Games(_Folder[AnyOptions]):
-    """Games of a match or of a tournament.
+    """Games of a match or of a tournament, or of nobody knows which.
 
     Attributes:
         records: Of the finished games.
     """
 
     records: list[GameRecord] = field(default_factory=list)
+
+    @property
+    def films(self) -> list[Path]:
+        """Every film, also of games that have no record."""
+        return sorted((self.path / "films").glob("*.h5"), key=_natural)
 
     def film(self, record: GameRecord) -> Path | None:
         """The film of a game, None where there is none."""
@@ -112,9 +126,13 @@ class Games(_Folder[AnyOptions]):
 class Match(Games[MatchOptions]):
     """Games of one pair of players."""
 
+    name, options_type = MATCH, MatchOptions
+
 
 class Tournament(Games[TournamentOptions]):
     """Games of everybody against everybody."""
+
+    name, options_type = TOURNAMENT, TournamentOptions
 
 
 class Unreadable(_Folder[Options]):
@@ -125,18 +143,42 @@ Source = Run | Match | Tournament | Unreadable
 
 
 def open_source(path: Path) -> Source:
-    """What lies at a path."""
-    if (path / RUN).exists() or any((path / name).exists() for name in (TRAJECTORIES, "trajectories")):
-        return _usable(_open_run(path), path)
-    if (path / MATCH).exists():
-        return _usable(_open_games(Match(path), MATCH, MatchOptions), path)
-    if (path / TOURNAMENT).exists():
-        return _usable(_open_games(Tournament(path), TOURNAMENT, TournamentOptions), path)
+    """What lies at a path, if there is anything to report on."""
+    found = look_into(path)
+    if isinstance(found, (Run, Match, Tournament)) and found.records:
+        return found
+    if found is not None:
+        what = "no episode is finished" if isinstance(found, Run) else "no game is finished"
+        return Unreadable(path, notes=found.notes if found.records else [*found.notes, what])
     if not path.exists():
         return Unreadable(path, notes=["there is no such folder"])
     if not path.is_dir():
         return Unreadable(path, notes=["it is not a folder; give the folder of a run, a match or a tournament"])
     return Unreadable(path, notes=[f"it holds no results: there is none of {', '.join(MANIFESTS)} in it"])
+
+
+def look_into(path: Path) -> Run | Games[Any] | None:
+    """What a folder holds, however little: a run that has only begun, films without a manifest; None for nothing."""
+    if any((path / name).exists() for name in (RUN, TRAJECTORIES, "trajectories")):
+        return _open_run(path)
+    for kind in (Match, Tournament):
+        if (path / kind.name).exists():
+            games = kind(path)
+            _read_manifest(games, kind.name, kind.options_type, "options and versions")
+            return _open_games(games)
+    unknown: Games[Any] = Games(
+        path, notes=[f"there is neither {MATCH} nor {TOURNAMENT}: what was played is not known"]
+    )
+    return _open_games(unknown) if unknown.films else None
+
+
+@contextlib.contextmanager
+def reading_errors(path: Path) -> Iterator[None]:
+    """What reading a broken file raises, as an error of ours that names it."""
+    try:
+        yield
+    except BROKEN as error:
+        raise ConfigurationError(f"cannot read {str(path)!r}: {reason(error, path.parent)}") from error
 
 
 def short_name(agent: str) -> str:
@@ -147,34 +189,25 @@ def short_name(agent: str) -> str:
     return parts[-1].removesuffix(".zip")
 
 
-def _usable(source: Run | Match | Tournament, path: Path) -> Source:
-    if source.records:
-        return source
-    what = "no episode is finished" if isinstance(source, Run) else "no game is finished"
-    return Unreadable(path, notes=[*source.notes, what])
-
-
 def _open_run(path: Path) -> Run:
     run = Run(path)
-    try:
-        run.manifest = read_manifest(path, RUN, Options)
-    except (ConfigurationError, OSError) as error:
-        run.notes.append(f"{_why(error, path / RUN)}; agent, seed and versions are unknown")
+    _read_manifest(run, RUN, Options, "agent, seed and versions")
     by_job: dict[Job, EpisodeRecord] = {}
     for file in _trajectory_files(run):
         try:
-            by_job.update((record.job, record) for record in trajectories.read_records(file))
-            run.files.append(file)
+            found = {record.job: record for record in trajectories.read_records(file)}
         except BROKEN as error:
-            run.notes.append(f"cannot read {file.relative_to(path)}: {reason(error, path)}")
-    stored = len(by_job)
-    for record in _journal(run):
+            what = f"cannot read {file.name}" if file.name == TRAJECTORIES else f"segment {file.name} cannot be read"
+            run.notes.append(f"{what}: {reason(error, path)}")
+        else:
+            by_job |= found
+            run.stored |= dict.fromkeys(found, file)
+    for record in _read_journal(run, EpisodeRecord):
         by_job.setdefault(record.job, record)
     run.records = sorted(by_job.values(), key=lambda record: (record.env, record.index))
-    if len(by_job) > stored:
-        run.notes.append(
-            f"the trajectories of {len(by_job) - stored} episodes are missing: only their records are left"
-        )
+    missing = len(by_job) - len(run.stored)
+    if missing:
+        run.notes.append(f"the trajectories of {missing} episodes are missing: only their records are left")
     _check_complete(run)
     return run
 
@@ -190,19 +223,6 @@ def _trajectory_files(run: Run) -> list[Path]:
     return ([whole] if whole.exists() else []) + segments
 
 
-def _journal(run: Run) -> list[EpisodeRecord]:
-    try:
-        records, unreadable = read_journal(run.path, EpisodeRecord)
-    except OSError as error:
-        run.notes.append(f"cannot read journal.jsonl: {reason(error, run.path)}")
-        return []
-    if not (run.path / "journal.jsonl").exists():
-        run.notes.append("journal.jsonl is missing")
-    if unreadable:
-        run.notes.append(f"{_count(unreadable, 'line')} of journal.jsonl cannot be read")
-    return records
-
-
 def _check_complete(run: Run) -> None:
     if run.manifest is None:
         return
@@ -215,31 +235,44 @@ def _check_complete(run: Run) -> None:
             run.notes.append(f"{env} is unfinished: {played} of {options.episodes} episodes are there")
 
 
-def _open_games(games: Match | Tournament, name: str, kind: type[Any]) -> Match | Tournament:
-    try:
-        games.manifest = read_manifest(games.path, name, kind)
-    except (ConfigurationError, OSError) as error:
-        games.notes.append(f"{_why(error, games.path / name)}; options and versions are unknown")
-    try:
-        games.records, unreadable = read_journal(games.path, GameRecord)
-    except OSError as error:
-        games.notes.append(f"cannot read journal.jsonl: {reason(error, games.path)}")
-        return games
-    if not (games.path / "journal.jsonl").exists():
-        games.notes.append("journal.jsonl is missing")
-    if unreadable:
-        games.notes.append(f"{_count(unreadable, 'line')} of journal.jsonl cannot be read")
+def _open_games(games: Games[Any]) -> Games[Any]:
+    games.records = _read_journal(games, GameRecord)
     missing = [record.job.key for record in games.records if games.film(record) is None and record.steps]
     if missing:
-        games.notes.append(
-            f"{_count(len(missing), 'film')} missing, of game {', '.join(missing[:5])}{'…' * (len(missing) > 5)}"
-        )
+        named = ", ".join(missing[:5]) + "…" * (len(missing) > 5)
+        games.notes.append(f"{_count(len(missing), 'film')} missing: game {named} has no film")
+    if isinstance(games, Match) and games.manifest and len(games.records) < games.manifest.options.games:
+        asked = games.manifest.options.games
+        games.notes.append(f"the match is unfinished: {len(games.records)} of its {asked} games are there")
     return games
 
 
-def _why(error: BaseException, manifest: Path) -> str:
-    """Why a manifest cannot be read, without the path of its folder, which stands beside the note."""
-    return reason(error, manifest.parent) if manifest.exists() else f"{manifest.name} is missing"
+def _read_manifest(folder: _Folder[Any], name: str, kind: type[Any], unknown: str) -> None:
+    """Read the manifest; where there is none, it is said what is unknown."""
+    try:
+        folder.manifest = read_manifest(folder.path, name, kind)
+    except (ConfigurationError, OSError) as error:
+        there = (folder.path / name).exists()
+        why = reason(error, folder.path) if there else f"{name} is missing"
+        folder.notes.append(f"{why}; {unknown} are unknown")
+
+
+def _read_journal(folder: _Folder[Any], kind: type[Record]) -> list[Record]:
+    try:
+        records, unreadable = read_journal(folder.path, kind)
+    except OSError as error:
+        folder.notes.append(f"cannot read {JOURNAL}: {reason(error, folder.path)}")
+        return []
+    if not (folder.path / JOURNAL).exists():
+        folder.notes.append(f"{JOURNAL} is missing")
+    if unreadable:
+        folder.notes.append(f"{_count(unreadable, 'line')} of {JOURNAL} cannot be read")
+    return records
+
+
+def _natural(path: Path) -> list[str | int]:
+    """ "10" after "9"."""
+    return [int(part) if part.isdigit() else part for part in re.split(r"([0-9]+)", path.stem)]
 
 
 def _count(number: int, what: str) -> str:

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +28,23 @@ class Series:
     class_: str
 
 
+@dataclass(frozen=True)
+class Axes:
+    """The axes of a histogram.
+
+    Attributes:
+        x_label, y_label: What stands beside them.
+        log_x, log_y: Whether they are logarithmic.
+        include: A value that the x axis reaches whatever the data are.
+    """
+
+    x_label: str
+    y_label: str
+    log_x: bool = False
+    log_y: bool = False
+    include: float | None = None
+
+
 def log_edges(low: float, high: float, per_decade: int = 10) -> Array:
     """Edges of bins that are equally wide on a logarithmic axis and cover low … high (both positive)."""
     first = math.floor(math.log10(low) * per_decade + 1e-9)
@@ -52,48 +68,26 @@ def rows_of(edges: Array, *counts: NDArray[np.int64], form: str = ".3g") -> list
     ]
 
 
-class Axes(NamedTuple):
-    """What stands at the axes, and whether they are logarithmic."""
-
-    x_label: str
-    y_label: str
-    log_x: bool = False
-    log_y: bool = False
-
-
 def histogram(
-    edges: Array,
-    series: Sequence[Series],
-    axes: Axes,
-    title: str,
-    *,
-    rules: Sequence[tuple[float, str]] = (),
-    include: float | None = None,
+    edges: Array, series: Sequence[Series], axes: Axes, title: str, rules: Sequence[tuple[float, str]] = ()
 ) -> Markup:
     """A histogram; the series are stacked (on a logarithmic count axis they stand behind each other).
 
     Args:
         edges: Of the bins. Shape (b + 1,).
         series: Each with counts of shape (b,).
-        axes: What the bins and the counts are.
+        axes: What they say and how they are divided.
         title: What is read out instead of it.
         rules: Labelled vertical lines: a limit, a mean.
-        include: A value that the x axis reaches whatever the data are.
     """
-    total = (
-        np.sum([one.counts for one in series], axis=0)
-        if not axes.log_y
-        else np.max([one.counts for one in series], axis=0)
-    )
+    counts = [one.counts for one in series]
+    total = np.max(counts, axis=0) if axes.log_y else np.sum(counts, axis=0)
     highest = float(max(total.max(), 1))
-    y = (
-        Scale(0.5, 10.0 ** math.ceil(math.log10(highest * 1.2)), log=True)
-        if axes.log_y
-        else Scale(0.0, _ceiling(highest))
-    )
+    top = 10.0 ** math.ceil(math.log10(highest * 1.2))
+    y = Scale(0.5, top, log=True) if axes.log_y else Scale(0.0, _ceiling(highest))
     low, high = float(edges[0]), float(edges[-1])
-    if include is not None:
-        low, high = min(low, include), max(high, include)
+    if axes.include is not None:
+        low, high = min(low, axes.include), max(high, axes.include)
     plot = Plot(Scale(low, high, log=axes.log_x), y, axes.x_label, axes.y_label)
     below = np.zeros(len(edges) - 1)
     for one in series:

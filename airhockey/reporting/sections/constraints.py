@@ -41,10 +41,9 @@ def _margins(name: str, margins: Margins) -> Markup:
         histogram(
             edges,
             [Series("kept", kept, "a"), Series("violated", violated, "bad")],
-            Axes(f"{unit} beyond the limit (negative: room left)", "steps", log_y=True),
+            Axes(f"{unit} beyond the limit (negative: room left)", "steps", log_y=True, include=0.0),
             f"Margin of {words.constraint(name)} against its limit in {len(values)} steps: {says}.",
             rules=[(0.0, "limit")],
-            include=0.0,
         ),
         data=table(f"Steps by value of {name}", (unit or "value", "steps"), rows),
     )
@@ -93,7 +92,10 @@ def _violation_times(violated: dict[str, Margins]) -> Markup:
     return figure(
         "Constraints violated: when",
         histogram(
-            edges, series, Axes("s since the start", "steps"), "Violating steps by the time since the episode's start."
+            edges,
+            series,
+            Axes("s since the start", "steps"),
+            "Violating steps by the time since the episode's start.",
         ),
         legend=[(one.class_, words.constraint(one.name)) for one in series],
         data=table("Violating steps by time in s", ("s", *(words.constraint(one.name) for one in series)), rows),

@@ -1,5 +1,6 @@
 """Penalties of a game, and who wins it."""
 
+import msgspec
 import numpy as np
 import pytest
 from games import Clock, Stander, new_game, side
@@ -8,7 +9,7 @@ from airhockey.envs.editions import edition
 from airhockey.evaluator.isolation.handle import LocalAgent
 from airhockey.evaluator.judging.games import PenaltyCount, game_class, penalty_limit, tally, winner
 from airhockey.evaluator.play.game import GamePlay
-from airhockey.evaluator.runs.game_records import Variant
+from airhockey.evaluator.runs.game_records import Event, Variant
 
 RULES = edition()
 WHOLE = 45000
@@ -123,6 +124,7 @@ def test_an_episode_of_penalties_is_500_steps() -> None:
     assert 480 <= violations[0].step <= 500
     assert violations[1].step == 501
     assert (violations[0].why or "").startswith("ee_constr: 3 points for this episode")
+    assert sum(event.points for event in violations) == record.home.penalty
     assert [event.step for event in record.events] == sorted(event.step for event in record.events)
 
 
@@ -170,3 +172,13 @@ def test_computation_time_is_judged_per_episode(monkeypatch: pytest.MonkeyPatch)
         (100, "held"),
         (100, "violation"),
     ]
+
+
+def test_an_event_of_an_old_journal_has_no_points_and_one_without_points_is_written_as_before() -> None:
+    line = b'{"step":3,"what":"violation","who":"home","why":"ee_constr: 3 points for this episode, up to 1 beyond"}'
+    event = msgspec.json.decode(line, type=Event)
+    assert event.points == 0.0
+    assert msgspec.json.encode(event) == line
+    assert (
+        msgspec.json.decode(msgspec.json.encode(msgspec.structs.replace(event, points=2.5)), type=Event).points == 2.5
+    )

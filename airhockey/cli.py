@@ -12,8 +12,10 @@ from airhockey import __version__
 from airhockey.commands import HELP_PAGE
 from airhockey.commands._streams import be_patient, leave, silence
 from airhockey.errors import AirHockeyError
+from airhockey.inputs.names import shown
 
 USAGE_ERROR = 2
+_LONGEST = 4000  # characters of a message
 
 
 class LazyGroup(click.RichGroup):
@@ -91,7 +93,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def complain(message: str) -> int:
     """Say in one line what is wrong; returns the exit status of bad input."""
-    click.echo(f"hockey: {' '.join(message.split())}", err=True)
+    click.echo(f"hockey: {shown(' '.join(message.split()), _LONGEST)}", err=True)
     return USAGE_ERROR
 
 

@@ -22,6 +22,7 @@ from airhockey.evaluator.isolation.modes import choose
 from airhockey.evaluator.runs.folder import RunFolder
 from airhockey.evaluator.runs.game_records import GameOptions
 from airhockey.evaluator.runs.manifest import has_option, option_of
+from airhockey.inputs.names import shown
 from airhockey.learning.diverged import DivergedError
 
 AGENT_FAILED, DIVERGED, INTERRUPTED = 3, 4, 130
@@ -220,7 +221,7 @@ def say_notes(notes: Iterable[str], most: int | None = None) -> None:
     """What is missing, on the standard error, a line each; a long list is cut."""
     notes = list(notes)
     for note in notes[:most]:
-        click.echo(f"hockey: {' '.join(note.split())}", err=True)
+        click.echo(f"hockey: {shown(' '.join(note.split()), 1000)}", err=True)
     if most is not None and len(notes) > most:
         click.echo(f"hockey: … and {len(notes) - most} more of this kind", err=True)
 

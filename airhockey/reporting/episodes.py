@@ -21,6 +21,7 @@ Table = NDArray[Any]
 BASE_X = IIWA.base_positions[0][0]
 """World x of the robot frame's origin, in [m]: the same for both robots."""
 _BLOCK = 50_000  # steps
+_HUGE = 1e9  # beyond it, or not a number: no value of a simulation is
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,10 @@ def _read_block(group: Any, table: Table) -> TaskData:
     seen = "true_observations" if "true_observations" in group else "observations"
     puck_before, puck_after, start = _puck(group[seen], table)
     constraints = {name: group["constraints"][name][steps] for name in group.get("constraints", ())}
+    times = group["computation_time"][steps]
+    for values in (puck_before, puck_after, times, *constraints.values()):
+        if not (np.abs(values) < _HUGE).all():
+            raise ValueError("it holds values that no simulation gave")
     mallet = _end_effector(constraints.get("ee_constr"), steps.stop - steps.start)
     since_start = np.arange(steps.stop - steps.start) - np.repeat(firsts, table["steps"])
     ends = _hits(puck_before, puck_after, mallet, since_start == 0)
@@ -106,7 +111,7 @@ def _read_block(group: Any, table: Table) -> TaskData:
         margins={name: _margins(values, firsts, since_start, mallet) for name, values in constraints.items()},
         hit_speed=np.linalg.norm(puck_after[ends, 3:5], axis=1),
         hit_success=np.repeat(table["success"], table["steps"])[ends],
-        times=group["computation_time"][steps],
+        times=times,
     )
 
 

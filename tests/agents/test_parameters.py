@@ -76,6 +76,6 @@ def test_an_unknown_file_lists_those_there_are():
 def test_broken_yaml_is_one_line(tmp_path):
     path = tmp_path / "broken.yaml"
     path.write_text("hit: [1,\n  2", encoding="utf-8")
-    with pytest.raises(ConfigurationError, match="cannot read the parameters") as caught:
+    with pytest.raises(ConfigurationError, match="is not valid YAML") as caught:
         thesis_parameters(path)
     assert "\n" not in str(caught.value)

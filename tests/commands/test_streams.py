@@ -61,3 +61,11 @@ open({str(tmp_path / "done")!r}, "w").close()
     os.close(master)
     (tmp_path / "gone").touch()
     assert process.wait(60) == 0 and (tmp_path / "done").exists()
+
+
+def test_a_strangers_text_commands_no_terminal(tmp_path: Path) -> None:
+    (tmp_path / "profile.yaml").write_text('"\\e[2J\\u202e[red]": 1\n')
+    line = ["evaluate", "--env", "3dof-hit", "--agent", "hold", "--disturbances", str(tmp_path / "profile.yaml")]
+    done = subprocess.run([*HOCKEY, *line], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1
+    assert "\x1b" not in done.stderr and "\u202e" not in done.stderr

@@ -334,3 +334,16 @@ def test_a_simulation_of_its_own_can_be_copied():
         before = env.simulation.data.qpos.tobytes()
         twin.step(np.stack([*[standing(env)] * 2]), np.zeros((0, 2, 7)), 1)
         assert env.simulation.data.qpos.tobytes() == before != twin.data.qpos.tobytes()
+
+
+@pytest.mark.parametrize("name", ["hit", "hit_single", "tournament"])
+def test_the_edition_of_2025(name):
+    env = envs.make(name, edition="2025", disturbances="harsh")
+    env.reset(seed=4)
+    for action in swinging(env, 7):
+        env.step(action)
+    state, twin, far = env.state, env.copy(), pickle.loads(pickle.dumps(env))
+    expected = future(twin)
+    assert future(far) == expected == future(env)
+    env.state = state
+    assert future(env) == expected

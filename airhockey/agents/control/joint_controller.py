@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.control.aqp import AnchoredQp
-from airhockey.agents.control.kinematics import ArmKinematics, chosen_kinematics
+from airhockey.agents.control.kinematics import ArmKinematics
+from airhockey.agents.control.kinematics_choice import chosen_kinematics
 from airhockey.agents.control.parameters import ControlParameters, control_parameters
 from airhockey.agents.control.qp import DEFAULT, make_solver
 from airhockey.agents.control.tip_velocity_control import (

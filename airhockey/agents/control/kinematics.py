@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from airhockey.agents.compiling import compiled
 from airhockey.envs.compiled import SerialChain, forward_kinematics, point_jacobian
 from airhockey.envs.specs import IIWA, PLANAR, RobotSpec
-from airhockey.errors import MissingDependencyError, unknown
 
 Array = NDArray[np.float64]
 
@@ -96,24 +95,6 @@ class ArmKinematics:
         """Heights of elbow and wrist, and how the joints move them. Shapes (2,), (2, n), or (0,), (0, n)."""
         heights, rows = heights_and_jacobian(*locate(self.chain, q))
         return heights, rows
-
-
-def chosen_kinematics(own: ArmKinematics, name: str) -> ArmKinematics:
-    """The kinematics by name: "compiled" (`own`) or "pinocchio".
-
-    Raises:
-        ConfigurationError: Another name.
-        MissingDependencyError: Pinocchio is not installed.
-    """
-    if name == "compiled":
-        return own
-    if name != "pinocchio":
-        raise unknown("kinematics", name, ("compiled", "pinocchio"))
-    try:
-        from airhockey.agents.control.pinocchio_model import PinocchioKinematics
-    except ModuleNotFoundError as error:
-        raise MissingDependencyError(f"{error.name} is not installed: pip install 'airhockey[control]'") from error
-    return PinocchioKinematics(own.spec)
 
 
 @compiled

@@ -54,8 +54,8 @@ def plain(checkout: Checkout | None, own: Interpreter | None = None) -> Launch:
         own: The interpreter that it brings; None for ours.
     """
     scratch = tempfile.mkdtemp(prefix="airhockey-scratch-")
-    start, name = (scratch, None) if checkout is None else (str(checkout.root), str(checkout.package))
-    return Launch(_command(own), environment(scratch, own), start, name, temporary_folders=[scratch])
+    root = None if checkout is None else str(checkout.root)
+    return Launch(_command(own), environment(scratch, own), root or scratch, root, temporary_folders=[scratch])
 
 
 def sandboxed(checkout: Checkout | None, limits: Limits, own: Interpreter | None = None) -> Launch:

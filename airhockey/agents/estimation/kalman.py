@@ -197,15 +197,18 @@ def follow(record: NDArray[Any], seen: Array, contact: bool, now: Array) -> int:
         For how many steps the track has been lost.
     """
     r = record[0]
+    motion = MotionModel(r.constants, r.e_spread, r.k_spread)
+    model = FilterModel(r.dt, r.observation, r.drift, r.contact, r.drift_share, r.surprise)
     lost = 0
     if r.begun:
-        state, covariance = predict(r.state, r.covariance, r.dt, _drift(r.state, contact, r), r)
+        drift = _drift(r.state, contact, model)
+        state, covariance = predict(r.state, r.covariance, model.dt, drift, motion)
         if _is_lost(seen, r.last, state):
             lost = r.lost + 1
         if lost == 0 or lost > LONGEST_LOSS:
-            state, covariance = correct(state, covariance, seen, r)
+            state, covariance = correct(state, covariance, seen, model)
     else:
-        state, covariance = seen.copy(), r.observation.copy()
+        state, covariance = seen.copy(), model.observation.copy()
     now[0], now[1:] = state, covariance
     r.state[:], r.covariance[:], r.last[:] = state, covariance, seen
     r.lost, r.begun = lost, True

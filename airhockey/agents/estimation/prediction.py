@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
-from airhockey.agents.estimation.kalman import PuckEstimate, motion_model, predict
+from airhockey.agents.estimation.kalman import MotionModel, PuckEstimate, motion_model, predict
 from airhockey.agents.estimation.motion import PuckMotion, advance, puck_motion
 from airhockey.envs.compiled import pack
 
@@ -128,6 +128,7 @@ def carried(
     state: Array, covariance: Array, steps: int, step: float, drift: Array, packed: NDArray[Any]
 ) -> tuple[Array, Array]:
     """State and covariance after so many steps, in [s]. Shapes (5,), (5, 5)."""
+    model = MotionModel(packed[0].constants, packed[0].e_spread, packed[0].k_spread)
     for _ in range(steps):
-        state, covariance = predict(state, covariance, step, drift, packed[0])
+        state, covariance = predict(state, covariance, step, drift, model)
     return state, covariance

@@ -8,7 +8,7 @@ from airhockey.agents.estimation.motion import advance, puck_motion
 from airhockey.agents.planner.estimation.rest_prediction import RestPrediction
 from airhockey.agents.planner.shots.parameters import smash_parameters
 from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
-from airhockey.agents.planner.skills.dead_puck import GAIN, PLACE, roll
+from airhockey.agents.planner.skills.dead_puck import GAIN, PLACE, Timing, roll
 from airhockey.agents.table import CONTACT, to_robot
 from airhockey.envs.specs import IIWA
 
@@ -26,7 +26,7 @@ def model() -> ShotModel:
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_the_puck_comes_to_rest_at_the_place(puck: tuple[float, float], side: float, model: ShotModel) -> None:
     place = PLACE * np.array([1.0, side])
-    shot = roll(np.array([*puck, 0.0, 0.0, 0.0]), 2.0, place, GAIN, TIP, 0.0, model)
+    shot = roll(np.array([*puck, 0.0, 0.0, 0.0]), Timing(2.0, 0.0), place, GAIN, TIP, model)
     assert shot.value == 1.0 and shot.wall == side
     assert np.hypot(*(shot.mallet - puck)) == pytest.approx(CONTACT)
     state = np.array([*puck, *(GAIN * shot.speed * shot.normal), 0.0])
@@ -36,11 +36,11 @@ def test_the_puck_comes_to_rest_at_the_place(puck: tuple[float, float], side: fl
 
 def test_a_drop_needs_time_to_get_behind_the_puck(model: ShotModel) -> None:
     puck = np.array([-0.6, 0.0, 0.0, 0.0, 0.0])
-    assert roll(puck, 0.1, PLACE, GAIN, TIP, 0.0, model).value == 0.0
+    assert roll(puck, Timing(0.1, 0.0), PLACE, GAIN, TIP, model).value == 0.0
 
 
 def test_a_puck_beyond_reach_cannot_be_dropped(model: ShotModel) -> None:
-    assert roll(np.array([0.1, 0.0, 0.0, 0.0, 0.0]), 2.0, PLACE, GAIN, TIP, 0.0, model).value == 0.0
+    assert roll(np.array([0.1, 0.0, 0.0, 0.0, 0.0]), Timing(2.0, 0.0), PLACE, GAIN, TIP, model).value == 0.0
 
 
 @pytest.mark.parametrize("damping", [0.4, 0.5, 0.6])

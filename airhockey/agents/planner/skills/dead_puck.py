@@ -9,7 +9,7 @@ and mallet are not quite as they are believed to be; so it is watched how far th
 """
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -60,7 +60,7 @@ class DeadPuck(Striker):
         self._scouted = -1
         self._watch = RestPrediction(self._dt)
         self.forget()
-        roll(np.array([-0.5, 0.0, 0.0, 0.0, 0.0]), 1.0, PLACE, GAIN, np.array([-0.8, 0.0]), 0.1, self._model)
+        roll(np.array([-0.5, 0.0, 0.0, 0.0, 0.0]), Timing(1.0, 0.1), PLACE, GAIN, np.array([-0.8, 0.0]), self._model)
 
     def begin(self, situation: Situation) -> None:
         """See `Skill.begin`."""
@@ -132,20 +132,33 @@ class DeadPuck(Striker):
 
     def _roll(self, situation: Situation, path: Array, wait: float, side: float, margin: float) -> Shot:
         at_contact = path[min(round(wait / self._dt), len(path) - 1)]
-        return roll(at_contact, wait, PLACE * np.array([1.0, side]), self._gain, situation.tip, margin, self._model)
+        return roll(
+            at_contact, Timing(wait, margin), PLACE * np.array([1.0, side]), self._gain, situation.tip, self._model
+        )
+
+
+class Timing(NamedTuple):
+    """When a stroke meets the puck.
+
+    Attributes:
+        wait: Time until then, in [s].
+        margin: Time to spare that the way to the stroke's beginning must leave, in [s].
+    """
+
+    wait: float
+    margin: float
 
 
 @compiled
-def roll(puck: Array, wait: float, place: Array, gain: float, tip: Array, margin: float, model: ShotModel) -> Shot:
+def roll(puck: Array, timing: Timing, place: Array, gain: float, tip: Array, model: ShotModel) -> Shot:
     """The stroke after which the puck comes to rest at a place.
 
     Args:
         puck: Its state at contact. Shape (5,).
-        wait: Time until then, in [s].
+        timing: When it is met.
         place: In [m]. Shape (2,).
         gain: g of the contact, as far as it is known.
         tip: Where the mallet is now, in [m]. Shape (2,).
-        margin: Time to spare that the way to the stroke's beginning must leave, in [s].
         model: Constants.
 
     Returns:
@@ -158,6 +171,8 @@ def roll(puck: Array, wait: float, place: Array, gain: float, tip: Array, margin
     mallet = puck[:2] - model.contact * normal
     side = 1.0 if place[1] > 0.0 else -1.0
     fits = puck[0] <= model.upper[0] and normal[0] > FORWARD
-    value = 1.0 if fits and possible(Line(mallet, normal, speed), wait - margin, tip, puck, model) else 0.0
+    value = (
+        1.0 if fits and possible(Line(mallet, normal, speed), timing.wait - timing.margin, tip, puck, model) else 0.0
+    )
     commanded = turned(normal, model.turn)
-    return Shot(value, wait, place[1], side, speed, commanded, puck[:2] - model.contact * commanded)
+    return Shot(value, timing.wait, place[1], side, speed, commanded, puck[:2] - model.contact * commanded)

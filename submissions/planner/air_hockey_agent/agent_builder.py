@@ -1,4 +1,4 @@
-"""Our `planner` as a submission: it also runs in the official evaluator, given `pip install airhockey` there."""
+"""Our `planner` as a submission: it also runs in the official evaluator beside which airhockey is installed."""
 
 from airhockey.agents import build_agent as build
 

@@ -42,7 +42,7 @@ KEYS = [
         ("evaluate --env 7dof-hit --robot 3dof", "--robot"),
         ("evaluate --agent nobody", "'nobody'"),
         ("evaluate --agent ./nowhere", "nowhere"),
-        ("evaluate --agent {tmp}", "agent_builder.py"),
+        ("evaluate --agent {tmp}/nothing", "agent_builder.py"),
         ("evaluate --agent {tmp}/bad_config", "agent_config.yml"),
         ("evaluate --disturbances storm", "'storm'"),
         ("evaluate --disturbances storm.yaml", "storm.yaml"),
@@ -75,6 +75,7 @@ def test_bad_input_is_one_line_and_status_2_and_leaves_nothing(
     (tmp_path / "broken.yaml").write_text("puck: [1, 2")
     (tmp_path / "unknown_key.yaml").write_text("profile: mine\npuk: {position: 0.1}")
     (tmp_path / "negative.yaml").write_text("profile: mine\ndelay: -1")
+    (tmp_path / "nothing").mkdir()
     (tmp_path / "bad_config").mkdir()
     (tmp_path / "bad_config" / "agent_builder.py").write_text("")
     (tmp_path / "bad_config" / "agent_config.yml").write_text("a: [")

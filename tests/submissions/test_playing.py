@@ -54,7 +54,7 @@ def test_a_failed_agent_is_restarted_for_the_next_episode(submission: Callable[.
 
 def test_the_evaluator_measures_the_time(submission: Callable[..., str]) -> None:
     agent = submission("time.sleep(0.02 if self.steps == 2 else 0); time.perf_counter = time.thread_time = lambda: 0.0")
-    (wall,) = episodes(1, agent=agent, isolate="process")
+    (wall,) = episodes(1, agent=agent, isolate="process", clock="wall")
     assert wall.record.computation_time.max > 0.02
     busy = submission("sum(range(1000000)) if self.steps == 2 else 0")
     (cpu,) = episodes(1, agent=busy, isolate="process", clock="cpu")

@@ -52,7 +52,7 @@ class Watched:
 
 
 _all: "weakref.WeakSet[Watched]" = weakref.WeakSet()
-_lock = threading.Lock()
+_lock = threading.RLock()  # a collection in the midst of a look may close an agent, and forget it
 _thread: threading.Thread | None = None
 
 

@@ -115,8 +115,8 @@ def situation(x: float, velocity: tuple[float, float], tip: tuple[float, float] 
         ("hit", "ready", True, False, None, -0.5, -0.3, "defend"),
         ("hit", "prepare", False, False, None, -0.5, -0.3, "prepare"),
         ("hit", "prepare", False, False, "smash", -0.5, 0.0, "smash"),
-        ("tournament", "ready", True, False, None, 0.5, -1.5, "defend"),
-        ("tournament", "ready", True, False, "smash", 0.5, -1.5, "defend"),  # first stop it
+        ("tournament", "ready", True, False, None, 0.5, -0.5, "defend"),
+        ("tournament", "ready", True, False, "smash", 0.5, -0.5, "defend"),  # first stop it
         ("tournament", "ready", True, False, None, 0.5, -2.5, "repel"),
         ("tournament", "defend", False, False, None, 0.5, -2.5, "defend"),  # no change of mind on the way
         ("tournament", "ready", True, False, None, 0.5, 0.5, "ready"),

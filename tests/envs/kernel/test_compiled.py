@@ -1,5 +1,6 @@
 """Compiled functions give what their Python source gives."""
 
+import os
 import shutil
 import subprocess
 import sys
@@ -77,7 +78,13 @@ def test_a_change_in_a_called_function_or_a_constant_is_noticed(tmp_path):
         source = f"{head}from arena.specs import C\n@compiled\ndef inner(x):\n    return {factor} * x + C\n"
         (kernel / "inner.py").write_text(source)
         (tmp_path / "arena" / "specs.py").write_text(f"C = {constant}\n")
-        done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=True)
+        done = subprocess.run(
+            [sys.executable, "-c", program],
+            env=os.environ | {"PYTHONPATH": str(tmp_path)},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
         told.append(done.stdout.split())
     assert told == [["26.0", "0"], ["26.0", "1"], ["28.0", "0"], ["48.0", "0"]]
     assert not list(kernel.glob("*.nb?"))

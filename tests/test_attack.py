@@ -1,5 +1,6 @@
 """A sample of the attacks of `scripts/attack`, one of each kind that takes seconds."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -8,6 +9,7 @@ import pytest
 
 from airhockey.evaluator.isolation.sandbox import why_no_sandbox
 
+pytestmark = pytest.mark.skipif(os.environ.get("ATTACK") != "1", reason="it takes minutes: ATTACK=1 asks for it")
 ATTACK = Path(__file__).parents[1] / "scripts" / "attack"
 
 

@@ -13,11 +13,19 @@ import mujoco
 import numpy as np
 import pytest
 from arms import striker_angles
+from tools import needs_opencv
 
 from airhockey import compat, envs
 from airhockey.compat.finder import Finder
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("mushroom_rl") is None, reason="needs the extra mushroom")
+
+
+@pytest.fixture(autouse=True)
+def opencv() -> None:
+    """MushroomRL imports it."""
+    needs_opencv()
+
 
 MODULES = {
     "": (),

@@ -49,6 +49,7 @@ sys.path.insert(0, {here!r})
 import numpy as np
 from pathlib import Path
 from test_participants import PLAYS, play, tasks
+from tools import needs_opencv
 zoo, told = Path({zoo!r}), {{}}
 for name in PLAYS:
     told[name] = list(play(zoo / name, tasks(zoo / name)[0], "none"))
@@ -56,6 +57,12 @@ for name in PLAYS:
         told[name + " away"] = list(play(zoo / name, "tournament", "none", side=2))
 np.savez({target!r}, **told)
 """
+
+
+@pytest.fixture(scope="session", autouse=True)
+def opencv() -> None:
+    """Some entries import MushroomRL, which imports it."""
+    needs_opencv()
 
 
 @pytest.fixture(scope="module")

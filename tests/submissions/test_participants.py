@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tools import needs_opencv
 
 from airhockey import envs
 from airhockey.agents.submission import submission_config, wanted_order

@@ -1,6 +1,6 @@
 """Installed beside what the official package pins (NumPy 1.24.4): the wheel plays there, and keeps under its size.
 
-It fetches packages and compiles from nothing, so it runs in CI, or where CLEAN_INSTALL=1 asks for it.
+It fetches packages and compiles from nothing: CLEAN_INSTALL=1 (`make compatibility`) asks for all of it, CI for a sample.
 """
 
 import os
@@ -60,6 +60,7 @@ def test_it_leaves_the_official_numpy_alone_and_is_small(clean: Path) -> None:
 
 
 @asked_for
+@pytest.mark.skipif("CLEAN_INSTALL" not in os.environ, reason="compiles each player anew: make compatibility")
 @pytest.mark.parametrize(("name", "recording", "env"), GAMES)
 def test_ours_play_there(clean: Path, name: str, recording: str, env: str) -> None:
     command = [clean / "python", STAND_IN, SUBMISSIONS / name, RECORDINGS / recording, env]

@@ -37,6 +37,7 @@ class LazyGroup(click.RichGroup):
         "validate",
         "package",
         "serve-agent",
+        "doctor",
     )
 
     def list_commands(self, ctx: Any) -> list[str]:

@@ -28,6 +28,7 @@ class LazyGroup(click.RichGroup):
         "watch",
         "replay",
         "video",
+        "failures",
         "report",
         "leaderboard",
         "train",

@@ -8,6 +8,7 @@ from rich.table import Table
 
 from airhockey.envs.editions import edition
 from airhockey.evaluator import RunResult, TaskResult
+from airhockey.evaluator.analysis.failures import causes_of
 from airhockey.evaluator.evaluation import failure_reasons
 from airhockey.evaluator.judging.standings import Standings
 from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES, judge, wilson_interval
@@ -37,6 +38,8 @@ def print_result(result: TaskResult | RunResult, folder: EpisodeFolder) -> None:
     for reason, episodes in failure_reasons(folder.path):
         console.print(f"agent failed {episodes} episode{'s' if episodes > 1 else ''}: {reason}", markup=False)
     _print_origin(console, folder)
+    if any(causes_of(record) for record in folder.records):
+        console.print(f"what went wrong: hockey failures {folder.path}", markup=False, soft_wrap=True)
 
 
 def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:

@@ -7,11 +7,11 @@ import os
 import re
 import sys
 from collections.abc import Iterator
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import click as plain_click
-import msgspec
 import rich_click as click
 
 EXTRAS = {
@@ -26,7 +26,8 @@ EXTRAS = {
 _REQUIREMENT = re.compile(r"^(?P<name>[A-Za-z0-9_.-]+).*extra == ['\"](?P<extra>\w+)['\"]")
 
 
-class Finding(msgspec.Struct, frozen=True, kw_only=True):
+@dataclass(frozen=True, kw_only=True)
+class Finding:
     """What was found out.
 
     Attributes:
@@ -59,7 +60,7 @@ def doctor(as_json: bool) -> None:
         if not as_json:
             _print(finding)
     if as_json:
-        click.echo(json.dumps(msgspec.to_builtins(findings), indent=2))
+        click.echo(json.dumps([asdict(finding) for finding in findings], indent=2))
     if any(finding.works is False for finding in findings if finding.about == "simulation"):
         raise plain_click.exceptions.Exit(1)
 

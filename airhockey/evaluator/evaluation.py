@@ -14,6 +14,7 @@ from airhockey.evaluator.checks import check_options
 from airhockey.evaluator.engines.engine import Engine, InProcess
 from airhockey.evaluator.engines.pool import JobFailed
 from airhockey.evaluator.judging import tasks as judging
+from airhockey.evaluator.play.blame import worker_lost
 from airhockey.evaluator.play.episode import EpisodePlayer, failed
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 from airhockey.evaluator.runs.journal import read_journal
@@ -36,7 +37,8 @@ def evaluate(folder: EpisodeFolder, engine: Engine | None = None, on_episode: On
         on_episode: Called with every record as it comes.
 
     Raises:
-        AirHockeyError: The disk is full, or workers do not start.
+        AirHockeyError: The disk is full.
+        EnvironmentFault: The environment, its disturbances or this machine failed; everything played so far is kept.
         KeyboardInterrupt: The user's; everything played so far is kept.
     """
     manifest = folder.manifest
@@ -45,7 +47,7 @@ def evaluate(folder: EpisodeFolder, engine: Engine | None = None, on_episode: On
         results = (engine or InProcess()).run(EpisodePlayer(manifest.options, manifest.profile), missing)
         with contextlib.closing(results):
             for job, result in results:
-                episode = failed(job, result.reason) if isinstance(result, JobFailed) else result
+                episode = _lost(job, result, manifest.options) if isinstance(result, JobFailed) else result
                 folder.add(episode)
                 if on_episode is not None:
                     on_episode(episode.record)
@@ -53,6 +55,12 @@ def evaluate(folder: EpisodeFolder, engine: Engine | None = None, on_episode: On
         result_of_all = report(folder.path)
         folder.keep_result(result_of_all)
     return result_of_all
+
+
+def _lost(job: Job, result: JobFailed, options: Options) -> Episode:
+    """An episode whose worker died every time; the agent's failure where its code ran there."""
+    worker_lost((options.agent,), options.isolate, result.reason)
+    return failed(job, result.reason)
 
 
 def play_episode(options: Options, env: str, index: int) -> Episode:

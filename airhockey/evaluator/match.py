@@ -11,6 +11,7 @@ from airhockey.evaluator.checks import check_agent, check_game_options, check_se
 from airhockey.evaluator.engines.engine import Engine, InProcess
 from airhockey.evaluator.engines.pool import JobFailed
 from airhockey.evaluator.judging.games import tally
+from airhockey.evaluator.play.blame import worker_lost
 from airhockey.evaluator.play.game import Game, GamePlayer, live_file, lost
 from airhockey.evaluator.play.seeding import game_seed
 from airhockey.evaluator.play.watchdog import culprit
@@ -141,6 +142,7 @@ def play_games(
 def _game_of(job: GameJob, result: Game | JobFailed, player: GamePlayer) -> Game:
     if not isinstance(result, JobFailed):
         return result
+    worker_lost((job.home_agent, job.away_agent), player.options.isolate, result.reason)
     guilty = None if player.live is None else culprit(live_file(player.live, job))
     return lost(job, player.options, result.reason, guilty)
 

@@ -1,5 +1,6 @@
 """Results as tables for people."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from rich import box
@@ -16,6 +17,7 @@ from airhockey.evaluator.match import GameResult, MatchFolder, MatchResult
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 from airhockey.evaluator.runs.folder import RunFolder
 from airhockey.evaluator.runs.game_records import Event
+from airhockey.inputs.names import shown
 
 _WIDTH = 130
 _FEW = 8  # events of a game that are shown when several games were played
@@ -66,6 +68,7 @@ def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
     for name in ("mean", "p99", "max"):
         label = f"draw_action {name}, {options.clock} clock"
         table.add_row(label, *(f"{getattr(task.computation_time, name) * 1e3:.3f} ms" for task in tasks))
+    table.add_row("steps over 20 ms", *(str(task.computation_time.late) for task in tasks))
     table.add_row("episodes failed by the agent", *(str(task.agent_errors) for task in tasks))
     return table
 
@@ -79,7 +82,7 @@ def print_match(result: MatchResult, folder: MatchFolder) -> None:
     """Print a table per game, its events, and the match as a whole."""
     console = output()
     for number, game in enumerate(result.games, start=1):
-        console.print(_game_table(result, game, number))
+        console.print(_game_table(result, game, number, folder.manifest.options.game.clock))
         for side, failure in zip((result.home, result.away), game.failures, strict=True):
             if failure is not None:
                 console.print(f"{side} failed: {failure}", markup=False, soft_wrap=True)
@@ -88,7 +91,7 @@ def print_match(result: MatchResult, folder: MatchFolder) -> None:
     _print_origin(console, folder)
 
 
-def _game_table(result: MatchResult, game: GameResult, number: int) -> Table:
+def _game_table(result: MatchResult, game: GameResult, number: int, clock: str) -> Table:
     title = f"game {number}, {game.steps} steps, disturbances {result.disturbances}: {_outcome(result, game)}"
     table = _titled(title)
     table.add_column("")
@@ -107,8 +110,9 @@ def _game_table(result: MatchResult, game: GameResult, number: int) -> Table:
         table.add_row(f"episodes violating {name}", *(str(counts[name]) for counts in game.violations))
     table.add_row("penalty points", *(f"{points:g}" for points in game.penalty))
     table.add_row("deployability", *game.deployability)
-    table.add_row("steps with a held command", *map(str, game.held))
-    table.add_row("draw_action max", *(f"{seconds * 1e3:.3f} ms" for seconds in game.computation_time_max))
+    for name, times in (("mean", game.computation_time_mean), ("max", game.computation_time_max)):
+        table.add_row(f"draw_action {name}, {clock} clock", *(f"{seconds * 1e3:.3f} ms" for seconds in times))
+    table.add_row("steps over 20 ms: command held", *map(str, game.held))
     return table
 
 
@@ -178,4 +182,11 @@ def _print_origin(console: Console, folder: RunFolder[Any, Any]) -> None:
     """Where a result comes from, and where it is stored."""
     versions = ", ".join(f"{name} {version}" for name, version in folder.manifest.versions.items())
     console.print(f"seed {folder.manifest.options.seed}, {versions}", soft_wrap=True)
+    print_inputs(console, folder.manifest.inputs)
     console.print(f"stored in {folder.path}", soft_wrap=True, markup=False)
+
+
+def print_inputs(console: Console, inputs: Mapping[str, str]) -> None:
+    """Agents and files of a run, by their content."""
+    for name, digest in inputs.items():
+        console.print(f"{shown(name)}: SHA-256 {digest}", soft_wrap=True, markup=False)

@@ -18,6 +18,8 @@ from typing import Any, TypeVar, cast
 
 import numba
 
+from airhockey.errors import EnvironmentFault
+
 _PASSING = "AIRHOCKEY_PASSING_CACHE"
 """Names the folder for compiled code that the parent made, where none can be written that stays."""
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -30,7 +32,14 @@ def compiler(home: pathlib.Path, sources: Iterable[pathlib.Path], **options: Any
         home: Folder of the group; the cache is in its `__pycache__`, or in the user's cache where that is not writable.
         sources: Every file that the group's compiled code is made of.
         options: More options of `numba.njit`.
+
+    Raises:
+        EnvironmentFault: The compiler is disabled.
     """
+    if numba.config.DISABLE_JIT:
+        raise EnvironmentFault(
+            "numba's compiler is disabled, and nothing can be simulated without: unset NUMBA_DISABLE_JIT"
+        )
     cache = cache_folder(home, sources)
 
     def compiled(function: Function) -> Function:

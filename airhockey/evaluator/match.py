@@ -1,7 +1,7 @@
 """A match: some games of one pair of players."""
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import msgspec
@@ -11,6 +11,7 @@ from airhockey.evaluator.checks import check_agent, check_game_options, check_se
 from airhockey.evaluator.engines.engine import Engine, InProcess
 from airhockey.evaluator.engines.pool import JobFailed
 from airhockey.evaluator.judging.games import tally
+from airhockey.evaluator.play.blame import worker_lost
 from airhockey.evaluator.play.game import Game, GamePlayer, live_file, lost
 from airhockey.evaluator.play.seeding import game_seed
 from airhockey.evaluator.play.watchdog import culprit
@@ -57,6 +58,7 @@ class GameResult(msgspec.Struct, frozen=True, kw_only=True):
     penalty: tuple[float, float]
     deployability: tuple[str, str]
     violations: tuple[dict[str, int], dict[str, int]]
+    computation_time_mean: tuple[float, float]
     computation_time_max: tuple[float, float]
     held: tuple[int, int]
     failures: tuple[str | None, str | None]
@@ -64,8 +66,8 @@ class GameResult(msgspec.Struct, frozen=True, kw_only=True):
     events: tuple[Event, ...]
 
 
-class MatchResult(msgspec.Struct, frozen=True, kw_only=True):
-    """What `hockey match --json` prints: the games, and how home fared in them."""
+class MatchResult(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """What `hockey match --json` prints: the games, how home fared in them, and the manifest's `inputs`."""
 
     home: str
     away: str
@@ -74,6 +76,7 @@ class MatchResult(msgspec.Struct, frozen=True, kw_only=True):
     wins: int
     draws: int
     losses: int
+    inputs: dict[str, str] = {}
 
 
 class MatchFolder(GameFolder[MatchOptions]):
@@ -119,7 +122,7 @@ def play_match(folder: MatchFolder, engine: Engine | None = None, on_game: OnGam
     options = folder.manifest.options
     with folder:
         play_games(folder, match_jobs(options), engine, on_game)
-        result = match_result(options, folder.records)
+        result = match_result(options, folder.records, folder.manifest.inputs)
         folder.keep_result(result)
     return result
 
@@ -141,11 +144,14 @@ def play_games(
 def _game_of(job: GameJob, result: Game | JobFailed, player: GamePlayer) -> Game:
     if not isinstance(result, JobFailed):
         return result
+    worker_lost((job.home_agent, job.away_agent), player.options.isolate, result.reason)
     guilty = None if player.live is None else culprit(live_file(player.live, job))
     return lost(job, player.options, result.reason, guilty)
 
 
-def match_result(options: MatchOptions, records: list[GameRecord]) -> MatchResult:
+def match_result(
+    options: MatchOptions, records: list[GameRecord], inputs: Mapping[str, str] | None = None
+) -> MatchResult:
     """The match from its games, in their order."""
     jobs = match_jobs(options)
     games = tuple(
@@ -161,6 +167,7 @@ def match_result(options: MatchOptions, records: list[GameRecord]) -> MatchResul
         wins=wins,
         draws=draws,
         losses=losses,
+        inputs=dict(inputs or {}),
     )
 
 
@@ -180,6 +187,7 @@ def _seen_from_home(record: GameRecord, swapped: bool) -> GameResult:
         penalty=(home.penalty, away.penalty),
         deployability=(home.deployability, away.deployability),
         violations=(home.violations, away.violations),
+        computation_time_mean=(home.computation_time.mean, away.computation_time.mean),
         computation_time_max=(home.computation_time.max, away.computation_time.max),
         held=(home.held, away.held),
         failures=(home.failure, away.failure),

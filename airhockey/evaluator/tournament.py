@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.engines.engine import Engine
 from airhockey.evaluator.entries import Entry
@@ -76,20 +78,21 @@ def play_tournament(
     names = [entry.name for entry in options.entries]
 
     def on_game(record: GameRecord) -> None:
-        table = write_standings(folder.path, names, jobs, folder.records)
+        table = write_standings(folder.path, names, jobs, folder.records, folder.manifest.inputs)
         if on_standings is not None:
             on_standings(record, table)
 
     with folder:
         play_games(folder, jobs, engine, on_game)
-        return write_standings(folder.path, names, jobs, folder.records)
+        return write_standings(folder.path, names, jobs, folder.records, folder.manifest.inputs)
 
 
 def read_standings(path: Path) -> tuple[Manifest[TournamentOptions], Standings]:
     """The standings of a tournament from its folder, finished or not, without playing."""
     manifest = TournamentFolder.read(path)
     names = [entry.name for entry in manifest.options.entries]
-    return manifest, standings(names, schedule(manifest.options), read_journal(path, GameRecord).records)
+    found = standings(names, schedule(manifest.options), read_journal(path, GameRecord).records)
+    return manifest, msgspec.structs.replace(found, inputs=manifest.inputs)
 
 
 def _check_played(records: Iterable[GameRecord], options: TournamentOptions) -> None:

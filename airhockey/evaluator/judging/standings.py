@@ -11,7 +11,7 @@ the order in which the games happened to be played.
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -57,12 +57,13 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     uncertainty: float
 
 
-class Standings(msgspec.Struct, frozen=True, kw_only=True):
-    """All rows, best first, and how far the tournament is."""
+class Standings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """All rows, best first, how far the tournament is, and the manifest's `inputs`."""
 
     rows: tuple[Row, ...]
     played: int
     games: int
+    inputs: dict[str, str] = {}
 
 
 class _Score:
@@ -127,9 +128,11 @@ def standings(names: Sequence[str], jobs: Sequence[GameJob], records: Iterable[G
     return Standings(rows=tuple(rows), played=len(played), games=len(jobs))
 
 
-def write_standings(path: Path, names: Sequence[str], jobs: Sequence[GameJob], records: list[GameRecord]) -> Standings:
-    """Compute the standings and leave them as standings.json and standings.csv."""
-    table = standings(names, jobs, records)
+def write_standings(
+    path: Path, names: Sequence[str], jobs: Sequence[GameJob], records: list[GameRecord], inputs: Mapping[str, str]
+) -> Standings:
+    """Compute the standings and leave them, with the `inputs` of the manifest, as standings.json and standings.csv."""
+    table = msgspec.structs.replace(standings(names, jobs, records), inputs=dict(inputs))
     with disk_errors(path):
         write_record(path / "standings.json", table)
         replace_file(path / "standings.csv", as_csv(table).encode())

@@ -108,14 +108,19 @@ class Episode(msgspec.Struct, frozen=True):
 
 
 class RunTime(msgspec.Struct, frozen=True, kw_only=True):
-    """Time that `draw_action` took over a whole task, in [s]."""
+    """Time that `draw_action` took over a whole task, in [s].
+
+    Attributes:
+        late: Steps in which it took longer than a control step lasts.
+    """
 
     mean: float
     p99: float
     max: float
+    late: int = 0
 
 
-class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
+class TaskResult(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """The result of one task; its JSON is what `hockey evaluate --json` prints.
 
     Attributes:
@@ -123,6 +128,7 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
         penalty: Penalty points, summed over the episodes.
         violations: Constraint name -> number of episodes that violated it.
         agent_errors: Number of episodes that the agent failed.
+        inputs: See `Manifest`.
     """
 
     env: str
@@ -136,6 +142,7 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
     violations: dict[str, int]
     computation_time: RunTime
     agent_errors: int
+    inputs: dict[str, str] = {}
 
     @property
     def tasks(self) -> "tuple[TaskResult, ...]":

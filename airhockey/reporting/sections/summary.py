@@ -65,6 +65,7 @@ def conditions(sources: Iterable[Source], labels: dict[int, str]) -> Markup:
         "conditions",
         "Conditions",
         table("Conditions by folder", ("", *(labels[id(source)] for source in shown)), rows, numbers_from=99),
+        _contents(shown, labels),
         *(details(f"Disturbances {profile.profile} in full", facts(_flat(profile))) for profile in profiles),
     )
 
@@ -125,6 +126,20 @@ def _conditions_of(source: Run | Match | Tournament) -> dict[str, str]:
     if source.created:
         found["begun"] = source.created.replace("T", " ")
     return found | source.versions
+
+
+def _contents(sources: Iterable[Run | Match | Tournament], labels: dict[int, str]) -> Markup | None:
+    """Agents and files that decided the results, by their content; None where all came with airhockey."""
+    rows: list[Row] = []
+    for source in sources:
+        for path, digest in (source.manifest.inputs if source.manifest else {}).items():
+            rows.append((labels[id(source)], short_name(path), element("code", digest)))
+    if not rows:
+        return None
+    return joined(
+        element("h3", "Agents and files by their content"),
+        table("SHA-256 of agents and files", ("folder", "agent or file", "SHA-256"), rows, numbers_from=99),
+    )
 
 
 def _flat(profile: Disturbances) -> list[tuple[str, Child]]:

@@ -45,7 +45,9 @@ def evaluate(folder: EpisodeFolder, engine: Engine | None = None, on_episode: On
         results = (engine or InProcess()).run(EpisodePlayer(manifest.options, manifest.profile), missing)
         with contextlib.closing(results):
             for job, result in results:
-                episode = failed(job, result.reason) if isinstance(result, JobFailed) else result
+                episode = (
+                    failed(job, result.reason, manifest.options.edition) if isinstance(result, JobFailed) else result
+                )
                 folder.add(episode)
                 if on_episode is not None:
                     on_episode(episode.record)
@@ -89,7 +91,7 @@ def report(path: Path) -> Result:
         return results[0]
     phase, score = judging.score({result.env: result.success for result in results}, edition(options.edition))
     worst = judging.worst_class(result.deployability for result in results)
-    return RunResult(results=results, deployability=worst, phase=phase, score=score)
+    return RunResult(results=results, deployability=worst, phase=phase, score=score, edition=options.edition)
 
 
 def failure_reasons(path: Path, most: int = 3) -> list[tuple[str, int]]:
@@ -112,6 +114,7 @@ def _task_result(path: Path, options: Options, env: str, records: list[EpisodeRe
         violations=verdict.violations,
         computation_time=_run_time(read_steps(path / TRAJECTORIES, env, "computation_time")),
         agent_errors=verdict.failures,
+        edition=options.edition,
     )
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import msgspec
 
+from airhockey.envs.editions import DEFAULT
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.checks import check_agent, check_game_options, check_seed
 from airhockey.evaluator.engines.engine import Engine, InProcess
@@ -74,6 +75,7 @@ class MatchResult(msgspec.Struct, frozen=True, kw_only=True):
     wins: int
     draws: int
     losses: int
+    edition: str = DEFAULT
 
 
 class MatchFolder(GameFolder[MatchOptions]):
@@ -161,6 +163,7 @@ def match_result(options: MatchOptions, records: list[GameRecord]) -> MatchResul
         wins=wins,
         draws=draws,
         losses=losses,
+        edition=options.game.edition,
     )
 
 

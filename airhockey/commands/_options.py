@@ -16,7 +16,14 @@ Option = Callable[[Command], Command]
 robot = click.option(
     "--robot", type=click.Choice(["7dof", "3dof"]), default="7dof", show_default=True, help="Who plays it."
 )
-env = click.option("--env", metavar="NAME", help="Task and robot in one name, as in 7dof-prepare.")
+env = click.option(
+    "--env", metavar="NAME", help="Task and robot in one name, as in 7dof-prepare; in the edition of 2025 hit_single."
+)
+edition = click.option(
+    "--edition",
+    type=click.Choice(["2023", "2025"]),
+    help="The year whose rules apply.  [default: what --env or the submission was made for, else 2023]",
+)
 
 
 class Seed(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic since click 8.4
@@ -124,7 +131,7 @@ ISOLATION = (isolate, patience)
 PLAY = (*ISOLATION, real_time)
 VIEWER = (host, port, no_browser, window)
 RUN = (out, resume, quiet)
-GAMES = (game_steps, seed, agent_seed, jobs, cluster, disturbances, clock, variant, *PLAY, *RUN, as_json)
+GAMES = (edition, game_steps, seed, agent_seed, jobs, cluster, disturbances, clock, variant, *PLAY, *RUN, as_json)
 
 
 def options(*added: Option) -> Option:

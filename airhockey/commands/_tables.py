@@ -48,7 +48,7 @@ def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
     options = folder.manifest.options
     rules = edition(options.edition)
     verdicts = [judge([record for record in folder.records if record.env == task.env], rules) for task in tasks]
-    title = f"agent {options.agent}, {options.episodes} episodes, disturbances {options.disturbances}"
+    title = f"agent {options.agent}, {options.episodes} episodes, {_conditions(options.edition, options.disturbances)}"
     table = _titled(title)
     table.add_column("")
     for task in tasks:
@@ -92,7 +92,7 @@ def print_match(result: MatchResult, folder: MatchFolder) -> None:
 
 
 def _game_table(result: MatchResult, game: GameResult, number: int, clock: str) -> Table:
-    title = f"game {number}, {game.steps} steps, disturbances {result.disturbances}: {_outcome(result, game)}"
+    title = f"game {number}, {game.steps} steps, {_conditions(result.edition, result.disturbances)}: {_outcome(result, game)}"
     table = _titled(title)
     table.add_column("")
     table.add_column(
@@ -139,7 +139,7 @@ def _print_events(console: Console, result: MatchResult, events: tuple[Event, ..
 
 def print_standings(console: Console, table: Standings) -> None:
     """Print the standings of a tournament."""
-    title = f"standings after {table.played} of {table.games} games"
+    title = f"standings after {table.played} of {table.games} games, edition {table.edition}"
     shown = _titled(title)
     for name in (
         "#",
@@ -172,6 +172,11 @@ def print_standings(console: Console, table: Standings) -> None:
             f"{row.rating:.1f} ± {row.uncertainty:.1f}",
         )
     console.print(shown)
+
+
+def _conditions(edition: str, disturbances: str) -> str:
+    """Under which results can be compared."""
+    return f"edition {edition}, disturbances {disturbances}"
 
 
 def _titled(title: str) -> Table:

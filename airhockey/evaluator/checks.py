@@ -35,7 +35,7 @@ def check_options(options: Options) -> None:
     if options.clock not in CLOCKS:
         raise unknown("clock", options.clock, CLOCKS)
     if not options.environments:
-        raise ConfigurationError(f"no environment to evaluate on; there are {', '.join(task_environments(rules))}")
+        raise ConfigurationError(f"no environment to evaluate on; there are {', '.join(rules.tasks)}")
     for name in options.environments:
         _check_environment(name, rules)
     load_disturbances(options.disturbances)
@@ -79,17 +79,11 @@ def check_seed(seed: int) -> None:
         raise ConfigurationError(f"the seed must not be negative, as {seed} is")
 
 
-def task_environments(rules: Edition) -> tuple[str, ...]:
-    """Names of the environments that one player is evaluated on; a game of two is not among them."""
-    return tuple(name for name, environment in rules.environments.items() if environment.kind != "game")
-
-
 def _check_environment(name: str, rules: Edition) -> None:
-    tasks = task_environments(rules)
-    if name in rules.environments and name not in tasks:
-        raise ConfigurationError(f"{name!r} is a game of two players, not a task; the tasks are {', '.join(tasks)}")
-    if name not in tasks:
-        raise unknown("environment", name, tasks)
+    if rules.official_name(name) not in rules.tasks:
+        raise ConfigurationError(
+            f"{name!r} is a game of two players, not a task; the tasks are {', '.join(rules.tasks)}"
+        )
 
 
 def check_game_options(options: GameOptions) -> None:

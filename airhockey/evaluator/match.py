@@ -6,6 +6,7 @@ from typing import Any
 
 import msgspec
 
+from airhockey.envs.editions import DEFAULT
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.checks import check_agent, check_game_options, check_seed
 from airhockey.evaluator.engines.engine import Engine, InProcess
@@ -77,6 +78,7 @@ class MatchResult(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True)
     draws: int
     losses: int
     inputs: dict[str, str] = {}
+    edition: str = DEFAULT
 
 
 class MatchFolder(GameFolder[MatchOptions]):
@@ -168,6 +170,7 @@ def match_result(
         draws=draws,
         losses=losses,
         inputs=dict(inputs or {}),
+        edition=options.game.edition,
     )
 
 

@@ -34,6 +34,8 @@ def _loader(name: str, file: Path, record: EpisodeRecord, player: str) -> Callab
         with reading_errors(file):
             arrays = read_episode(file, record.env, record.index)
         title = f"{record.env}, episode {record.index}"
-        return episode_recording(name, record.env, player, arrays, Outcome(record.success, record.error), title)
+        return episode_recording(
+            name, record.env, player, arrays, Outcome(record.success, record.error), title, record.edition
+        )
 
     return load

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs.disturbances import load_disturbances
+from airhockey.envs.editions import edition
 from airhockey.envs.rendering.marks import TARGETS, Mark, path, target
 from airhockey.envs.rendering.scene_view import SceneView
 from airhockey.envs.specs import CONTROL_PERIOD
@@ -105,7 +106,7 @@ class LiveTask:
             return f"the agent failed: {self._seat.failure}"
         if not self._rollout.over and self.step < self.steps:
             return ""
-        _, achieved = ACHIEVED[self._name.rpartition("-")[2]]
+        _, achieved = ACHIEVED[edition(self._options.edition).environment(self._name).kind]
         return achieved if self._rollout.info["success"] else "not achieved"
 
 

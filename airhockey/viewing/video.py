@@ -111,7 +111,7 @@ def _render(
     from airhockey.envs.rendering.scene_view import SceneView
     from airhockey.viewing.overlay import Overlay
 
-    scene_view, overlay = SceneView(recording.env), Overlay(options.width, options.height)
+    scene_view, overlay = SceneView(recording.env, recording.edition), Overlay(options.width, options.height)
     with Camera(scene_view, options.width, options.height, options.inset, options.quality) as camera:
         for k, step in enumerate(steps, start=1):
             row = recording.row(step)

@@ -28,6 +28,7 @@ KEYS = [
     "violations",
     "computation_time",
     "agent_errors",
+    "edition",
 ]
 
 
@@ -122,7 +123,7 @@ def test_every_task_of_a_robot(hockey: Hockey) -> None:
     assert "stored in runs/3dof-all-hold-s0" in out
     status, out, _ = hockey(f"{arguments} --json")
     result = json.loads(out)
-    assert list(result) == ["results", "deployability", "phase", "score"]
+    assert list(result) == ["results", "deployability", "phase", "score", "edition"]
     assert [task["env"] for task in result["results"]] == ["3dof-hit", "3dof-defend"]
     assert all(list(task) == KEYS for task in result["results"])
     assert Path("runs/3dof-all-hold-s0-2").is_dir()  # never into another run's folder

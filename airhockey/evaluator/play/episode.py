@@ -42,6 +42,7 @@ def play(job: Job, rollout: Rollout, recorder: Recorder) -> Episode:
         violations=violated_steps(recorder.constraint_values[: recorder.steps], recorder.constraint_slices),
         computation_time=StepTime(mean=float(times.mean()), max=float(times.max())) if times.size else StepTime(),
         error=seat.failure,
+        edition=rollout.env.edition.edition,
     )
     return Episode(record, trajectory)
 
@@ -79,7 +80,7 @@ class EpisodePlayer:
         rollout = self.open(job)
         (seat,) = rollout.seats
         if seat.failure is not None:
-            return failed(job, seat.failure)
+            return failed(job, seat.failure, self.options.edition)
         assert self._task is not None
         return play(job, rollout, self._task.recorder)
 
@@ -129,6 +130,6 @@ class EpisodePlayer:
         return _Task(name, env, seats, Recorder(env, env.reset(seed=0).size, self.profile.blurs_observations))
 
 
-def failed(job: Job, reason: str) -> Episode:
+def failed(job: Job, reason: str, edition: str) -> Episode:
     """An episode that the agent failed before its first step."""
-    return Episode(EpisodeRecord(env=job.env, index=job.index, error=reason), {})
+    return Episode(EpisodeRecord(env=job.env, index=job.index, error=reason, edition=edition), {})

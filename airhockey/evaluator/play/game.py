@@ -140,6 +140,7 @@ class GamePlay:
             away=away,
             winner=winner(self._rules, self.options.variant, self.options.steps, home, away),
             events=tuple(sorted(self.events, key=lambda event: event.step)),
+            edition=self.options.edition,
         )
 
     def status(self, rate: float) -> Status:
@@ -292,5 +293,6 @@ def lost(job: GameJob, options: GameOptions, reason: str, guilty: Side | None) -
         away=away,
         winner=winner(rules, options.variant, options.steps, home, away),
         events=(Event(step=0, what="forfeit", who=guilty, why=reason),),
+        edition=options.edition,
     )
     return Game(record, np.empty((0, 0), dtype=np.float32))

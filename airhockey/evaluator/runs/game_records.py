@@ -5,6 +5,7 @@ from typing import Literal
 
 import msgspec
 
+from airhockey.envs.editions import DEFAULT
 from airhockey.evaluator.runs.records import Order, StepTime
 
 Side = Literal["home", "away"]
@@ -30,7 +31,7 @@ class GameOptions(msgspec.Struct, frozen=True, kw_only=True):
         disturbances: Name of a profile or absolute path of a YAML file.
         clock: What the time of `draw_action` is measured with; "cpu" does not mind a busy machine.
         variant: What becomes of a non-deployable player, see `VARIANTS`.
-        edition: Rule edition.
+        edition: The year whose rules apply.
         isolate: Where agents live; "auto" is with the evaluator for our own, elsewhere for submissions, as far away as the
             machine can have them.
         patience: Longest time for an answer of an agent that lives elsewhere, in [s].
@@ -42,7 +43,7 @@ class GameOptions(msgspec.Struct, frozen=True, kw_only=True):
     disturbances: str = "ideal"
     clock: Literal["wall", "cpu"] = "cpu"
     variant: Variant = "package"
-    edition: str = "2023"
+    edition: str = DEFAULT
     isolate: Literal["auto", "none", "process", "sandbox"] = "none"
     patience: float = 60.0
     real_time: float = 0.0
@@ -147,7 +148,7 @@ class PlayerResult(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GameRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """One line of a journal of games."""
+    """One line of a journal of games; `edition` is the year whose rules applied."""
 
     job: GameJob
     steps: int
@@ -155,6 +156,7 @@ class GameRecord(msgspec.Struct, frozen=True, kw_only=True):
     away: PlayerResult
     winner: Winner
     events: tuple[Event, ...]
+    edition: str = DEFAULT
 
     @property
     def key(self) -> str:

@@ -6,6 +6,8 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.editions import DEFAULT, available, edition
+
 Trajectory = dict[str, NDArray[np.float64]]
 """One episode's arrays by name; `airhockey.evaluator.play.episode.Recorder.trajectory` says which."""
 
@@ -24,7 +26,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
         disturbances: Name of a profile or absolute path of a YAML file.
         interpolation_order: See `Order`.
         clock: What the time of `draw_action` is measured with.
-        edition: Rule edition.
+        edition: The year whose rules apply.
         isolate: Where the agent lives: with the evaluator, in a process of its own, or in a sandbox.
         patience: Longest time for an answer of an agent that lives elsewhere, in [s].
         real_time: Pace of the steps relative to the robot's, for agents that think beside them; 0: as fast as possible.
@@ -42,7 +44,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     disturbances: str = "ideal"
     interpolation_order: Order = "agent"
     clock: Literal["wall", "cpu"] = "cpu"
-    edition: str = "2023"
+    edition: str = DEFAULT
     isolate: Literal["none", "process", "sandbox"] = "none"
     patience: float = 60.0
     real_time: float = 0.0
@@ -50,6 +52,13 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     settings: tuple[str, ...] = ()
     parameters: str | None = None
     agent_seed: str | None = None
+
+    def __post_init__(self) -> None:
+        """Environments go by the names of their edition, whichever they were given by; checks complain about others."""
+        if self.edition in available():
+            names = edition(self.edition).names
+            environments = tuple(names.get(name, name) for name in self.environments)
+            msgspec.structs.force_setattr(self, "environments", environments)
 
 
 class Job(msgspec.Struct, frozen=True):
@@ -78,6 +87,7 @@ class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
         violations: Constraint name -> number of steps that violated it.
         computation_time: Of `draw_action`.
         error: Why the agent failed the episode; None where it did not.
+        edition: The year whose rules applied.
     """
 
     env: str
@@ -88,6 +98,7 @@ class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
     violations: dict[str, int] = {}
     computation_time: StepTime = StepTime()
     error: str | None = None
+    edition: str = DEFAULT
 
     @property
     def job(self) -> Job:
@@ -129,6 +140,7 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
         violations: Constraint name -> number of episodes that violated it.
         agent_errors: Number of episodes that the agent failed.
         inputs: See `Manifest`.
+        edition: The year whose rules applied.
     """
 
     env: str
@@ -143,6 +155,7 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     computation_time: RunTime
     agent_errors: int
     inputs: dict[str, str] = {}
+    edition: str = DEFAULT
 
     @property
     def tasks(self) -> "tuple[TaskResult, ...]":
@@ -155,14 +168,16 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
 
     Attributes:
         deployability: The worst task's class.
-        phase: "phase-1" (3dof) or "phase-2" (7dof); None unless every task of it was played.
+        phase: "phase-1" (3dof) or "phase-2" (7dof), in the edition of 2025 "qualifying"; None unless all its tasks were played.
         score: Weighted success of the phase's tasks, 0 … 1.
+        edition: The year whose rules applied.
     """
 
     results: tuple[TaskResult, ...]
     deployability: str
     phase: str | None
     score: float | None
+    edition: str = DEFAULT
 
     @property
     def tasks(self) -> tuple[TaskResult, ...]:

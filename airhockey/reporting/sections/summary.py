@@ -7,8 +7,7 @@ from typing import Any
 import msgspec
 
 from airhockey.envs.disturbances import Disturbances
-from airhockey.envs.editions import edition
-from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES, PHASES
+from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES
 from airhockey.evaluator.judging.tasks import score as phase_score
 from airhockey.evaluator.runs.reader import Match, Run, Source, Tournament, Unreadable, short_name
 from airhockey.reporting import words
@@ -94,8 +93,8 @@ def _phases(tasks: Sequence[Task]) -> list[str]:
         own = [task for task in tasks if task.run is run]
         phase, score = phase_score({task.env: task.verdict.success for task in own}, own[0].rules)
         if score is not None:
-            robot = next(robot for robot, name in PHASES.items() if name == phase)
-            weights = edition(own[0].rules.edition).score_weights[robot]
+            rules = own[0].rules
+            weights = next(rules.score_weights[robot] for robot, name in rules.phases.items() if name == phase)
             formula = " + ".join(f"{weight:g} {env}" for env, weight in weights.items())
             said.append(f"{own[0].label}: {phase} score {score:.3f} ({formula}).")
     return said

@@ -34,6 +34,8 @@ def print_result(result: TaskResult | RunResult, folder: EpisodeFolder) -> None:
     if isinstance(result, RunResult):
         score = "" if result.score is None else f", {result.phase} score {result.score:.3f}"
         console.print(f"overall: {result.deployability}{score}")
+    for isolation in dict.fromkeys(task.isolation for task in tasks if task.isolation not in ("", "none")):
+        console.print(f"isolation: {isolation}", markup=False)
     for reason, episodes in failure_reasons(folder.path):
         console.print(f"agent failed {episodes} episode{'s' if episodes > 1 else ''}: {reason}", markup=False)
     _print_origin(console, folder)
@@ -63,6 +65,8 @@ def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
     for name in ("mean", "p99", "max"):
         label = f"draw_action {name}, {options.clock} clock"
         table.add_row(label, *(f"{getattr(task.computation_time, name) * 1e3:.3f} ms" for task in tasks))
+    for name in ("build_agent", "episode_start"):
+        table.add_row(f"longest {name}", *(f"{getattr(task.preparation_time, name):.3f} s" for task in tasks))
     table.add_row("episodes failed by the agent", *(str(task.agent_errors) for task in tasks))
     return table
 
@@ -77,6 +81,9 @@ def print_match(result: MatchResult, folder: MatchFolder) -> None:
     console = output()
     for number, game in enumerate(result.games, start=1):
         console.print(_game_table(result, game, number))
+        for side, isolation in zip((result.home, result.away), game.isolation, strict=True):
+            if isolation not in ("", "none"):
+                console.print(f"{side} ran in a {isolation}", markup=False, soft_wrap=True)
         for side, failure in zip((result.home, result.away), game.failures, strict=True):
             if failure is not None:
                 console.print(f"{side} failed: {failure}", markup=False, soft_wrap=True)
@@ -105,6 +112,8 @@ def _game_table(result: MatchResult, game: GameResult, number: int) -> Table:
     table.add_row("penalty points", *(f"{points:g}" for points in game.penalty))
     table.add_row("deployability", *game.deployability)
     table.add_row("steps with a held command", *map(str, game.held))
+    for name in ("build_agent", "episode_start"):
+        table.add_row(f"longest {name}", *(f"{getattr(times, name):.3f} s" for times in game.preparation_time))
     table.add_row("draw_action max", *(f"{seconds * 1e3:.3f} ms" for seconds in game.computation_time_max))
     return table
 

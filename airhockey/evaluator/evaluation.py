@@ -17,7 +17,17 @@ from airhockey.evaluator.judging import tasks as judging
 from airhockey.evaluator.play.episode import EpisodePlayer, failed
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 from airhockey.evaluator.runs.journal import read_journal
-from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, Options, RunResult, RunTime, TaskResult
+from airhockey.evaluator.runs.records import (
+    Episode,
+    EpisodeRecord,
+    Job,
+    Options,
+    PreparationTime,
+    RunResult,
+    RunTime,
+    TaskResult,
+    isolation_of,
+)
 from airhockey.evaluator.runs.trajectories import TRAJECTORIES, read_steps
 
 OnEpisode = Callable[[EpisodeRecord], None]
@@ -112,6 +122,11 @@ def _task_result(path: Path, options: Options, env: str, records: list[EpisodeRe
         violations=verdict.violations,
         computation_time=_run_time(read_steps(path / TRAJECTORIES, env, "computation_time")),
         agent_errors=verdict.failures,
+        isolation=isolation_of(record.process for record in records),
+        preparation_time=PreparationTime(
+            build_agent=max((record.process.build_time for record in records), default=0.0),
+            episode_start=max((record.process.start_time for record in records), default=0.0),
+        ),
     )
 
 

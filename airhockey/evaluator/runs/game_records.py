@@ -5,7 +5,7 @@ from typing import Literal
 
 import msgspec
 
-from airhockey.evaluator.runs.records import Order, StepTime
+from airhockey.evaluator.runs.records import AgentProcess, Order, StepTime
 
 Side = Literal["home", "away"]
 Winner = Literal["home", "away", "draw"]
@@ -127,6 +127,7 @@ class PlayerResult(msgspec.Struct, frozen=True, kw_only=True):
         violations: Constraint name -> number of episodes that violated it; "computation_time" is one of them.
         held: Steps in which its command was held because it took too long.
         computation_time: Of `draw_action`, in [s].
+        process: Where it lived.
         failure: Why it forfeited.
     """
 
@@ -138,6 +139,7 @@ class PlayerResult(msgspec.Struct, frozen=True, kw_only=True):
     violations: dict[str, int]
     held: int
     computation_time: StepTime
+    process: AgentProcess = AgentProcess()
     failure: str | None = None
 
     @property

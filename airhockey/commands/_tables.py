@@ -37,6 +37,8 @@ def print_result(result: TaskResult | RunResult, folder: EpisodeFolder) -> None:
     if isinstance(result, RunResult):
         score = "" if result.score is None else f", {result.phase} score {result.score:.3f}"
         console.print(f"overall: {result.deployability}{score}")
+    for isolation in dict.fromkeys(task.isolation for task in tasks if task.isolation not in ("", "none")):
+        console.print(f"isolation: {isolation}", markup=False)
     for reason, episodes in failure_reasons(folder.path):
         console.print(f"agent failed {episodes} episode{'s' if episodes > 1 else ''}: {reason}", markup=False)
     _print_origin(console, folder)
@@ -69,6 +71,8 @@ def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
         label = f"draw_action {name}, {options.clock} clock"
         table.add_row(label, *(f"{getattr(task.computation_time, name) * 1e3:.3f} ms" for task in tasks))
     table.add_row("steps over 20 ms", *(str(task.computation_time.late) for task in tasks))
+    for name in ("build_agent", "episode_start"):
+        table.add_row(f"longest {name}", *(f"{getattr(task.preparation_time, name):.3f} s" for task in tasks))
     table.add_row("episodes failed by the agent", *(str(task.agent_errors) for task in tasks))
     return table
 
@@ -83,6 +87,9 @@ def print_match(result: MatchResult, folder: MatchFolder) -> None:
     console = output()
     for number, game in enumerate(result.games, start=1):
         console.print(_game_table(result, game, number, folder.manifest.options.game.clock))
+        for side, isolation in zip((result.home, result.away), game.isolation, strict=True):
+            if isolation not in ("", "none"):
+                console.print(f"{side} ran in a {isolation}", markup=False, soft_wrap=True)
         for side, failure in zip((result.home, result.away), game.failures, strict=True):
             if failure is not None:
                 console.print(f"{side} failed: {failure}", markup=False, soft_wrap=True)
@@ -110,6 +117,8 @@ def _game_table(result: MatchResult, game: GameResult, number: int, clock: str) 
         table.add_row(f"episodes violating {name}", *(str(counts[name]) for counts in game.violations))
     table.add_row("penalty points", *(f"{points:g}" for points in game.penalty))
     table.add_row("deployability", *game.deployability)
+    for name in ("build_agent", "episode_start"):
+        table.add_row(f"longest {name}", *(f"{getattr(times, name):.3f} s" for times in game.preparation_time))
     for name, times in (("mean", game.computation_time_mean), ("max", game.computation_time_max)):
         table.add_row(f"draw_action {name}, {clock} clock", *(f"{seconds * 1e3:.3f} ms" for seconds in times))
     table.add_row("steps over 20 ms: command held", *map(str, game.held))

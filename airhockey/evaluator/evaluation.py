@@ -20,7 +20,17 @@ from airhockey.evaluator.play.episode import EpisodePlayer, failed
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 from airhockey.evaluator.runs.journal import read_journal
 from airhockey.evaluator.runs.manifest import Manifest
-from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, Options, RunResult, RunTime, TaskResult
+from airhockey.evaluator.runs.records import (
+    Episode,
+    EpisodeRecord,
+    Job,
+    Options,
+    PreparationTime,
+    RunResult,
+    RunTime,
+    TaskResult,
+    isolation_of,
+)
 from airhockey.evaluator.runs.trajectories import TRAJECTORIES, read_steps
 
 OnEpisode = Callable[[EpisodeRecord], None]
@@ -126,6 +136,11 @@ def _task_result(path: Path, manifest: Manifest[Options], env: str, records: lis
         agent_errors=verdict.failures,
         inputs=manifest.inputs,
         edition=options.edition,
+        isolation=isolation_of(record.process for record in records),
+        preparation_time=PreparationTime(
+            build_agent=max((record.process.build_time for record in records), default=0.0),
+            episode_start=max((record.process.start_time for record in records), default=0.0),
+        ),
     )
 
 

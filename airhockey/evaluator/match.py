@@ -17,9 +17,18 @@ from airhockey.evaluator.play.game import Game, GamePlayer, live_file, lost
 from airhockey.evaluator.play.seeding import game_seed
 from airhockey.evaluator.play.watchdog import culprit
 from airhockey.evaluator.runs.game_folder import GameFolder
-from airhockey.evaluator.runs.game_records import Event, GameJob, GameOptions, GameRecord, Side, Winner, in_order
+from airhockey.evaluator.runs.game_records import (
+    Event,
+    GameJob,
+    GameOptions,
+    GameRecord,
+    PlayerResult,
+    Side,
+    Winner,
+    in_order,
+)
 from airhockey.evaluator.runs.manifest import MATCH
-from airhockey.evaluator.runs.records import Order
+from airhockey.evaluator.runs.records import Order, PreparationTime
 
 OnGame = Callable[[GameRecord], None]
 
@@ -63,6 +72,8 @@ class GameResult(msgspec.Struct, frozen=True, kw_only=True):
     computation_time_max: tuple[float, float]
     held: tuple[int, int]
     failures: tuple[str | None, str | None]
+    isolation: tuple[str, str] = ("", "")
+    preparation_time: tuple[PreparationTime, PreparationTime] = (PreparationTime(), PreparationTime())
     winner: Winner
     events: tuple[Event, ...]
 
@@ -194,9 +205,15 @@ def _seen_from_home(record: GameRecord, swapped: bool) -> GameResult:
         computation_time_max=(home.computation_time.max, away.computation_time.max),
         held=(home.held, away.held),
         failures=(home.failure, away.failure),
+        isolation=(home.process.isolation, away.process.isolation),
+        preparation_time=(_preparation_time(home), _preparation_time(away)),
         winner=winner,
         events=record.events if not swapped else tuple(_swapped(event) for event in record.events),
     )
+
+
+def _preparation_time(player: PlayerResult) -> PreparationTime:
+    return PreparationTime(build_agent=player.process.build_time, episode_start=player.process.start_time)
 
 
 def _swapped(event: Event) -> Event:

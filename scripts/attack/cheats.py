@@ -295,15 +295,17 @@ class Agent(Base):
 """
 
 
+SEEDS = {"from its own seed, --seed 7": "7", "from its own seed, --seed random": "random"}
+
+
 def attack(sample: bool) -> Iterator[Verdict]:
     """Play with each cheat, and look at what is on record."""
-    for name, cheat in list(TIME.items())[: 3 if sample else None]:
-        yield _played("cheats with time", name, cheat.code, cheat.clock)
-    if not sample:
-        for name, code in WAITS.items():
-            yield _waited("entries that make others wait", name, code)
-    for seed in ("7", "random"):
-        yield _foreseen("knowing the future", f"from its own seed, --seed {seed}", seed)
+    for name in product.wanted(TIME)[: 3 if sample else None]:
+        yield _played("cheats with time", name, TIME[name].code, TIME[name].clock)
+    for name in () if sample else product.wanted(WAITS):
+        yield _waited("entries that make others wait", name, WAITS[name])
+    for name in product.wanted(SEEDS):
+        yield _foreseen("knowing the future", name, SEEDS[name])
 
 
 def _played(kind: str, name: str, code: str, clock: str) -> Verdict:

@@ -229,8 +229,8 @@ ENTRIES: dict[str, Make] = {
 
 def attack(sample: bool) -> Iterator[Verdict]:
     """Hand every bad entry to the commands that read entries."""
-    chosen = list(ENTRIES.items())[:: 16 if sample else 1]
-    for name, make in chosen:
+    for name in product.wanted(ENTRIES)[:: 16 if sample else 1]:
+        make = ENTRIES[name]
         with product.fresh_place() as place:
             entry = make(place.path)
             before = _outside(place.path, entry)

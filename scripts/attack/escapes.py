@@ -105,8 +105,8 @@ def attack(sample: bool) -> Iterator[Verdict]:
 
 
 def _attack_from(kind: str, prefix: Sequence[str], sample: bool) -> Iterator[Verdict]:
-    together = [name for name in names() if name not in ALONE]
-    groups = [together, *([name] for name in ALONE)]
+    together = [name for name in product.wanted(names()) if name not in ALONE]
+    groups = [*([together] if together else []), *([name] for name in product.wanted(ALONE))]
     for group in groups[:2] if sample else groups:
         with _host() as (place, told):
             entry = make_entry(place.path, told, group)

@@ -33,7 +33,7 @@ NASTY = (
 def attack(sample: bool) -> Iterator[Verdict]:
     """Mutate every kind of input; each batch is read in a process of its own."""
     count = SAMPLE if sample else COUNT
-    for kind in READERS:
+    for kind in product.wanted(READERS):
         share = max(count // len(READERS), 1)
         for first in range(0, share, BATCH):
             yield from _batch(kind, range(first, min(first + BATCH, share)))

@@ -54,8 +54,8 @@ def attack(sample: bool) -> Iterator[Verdict]:
     """Kill every kind of run again and again, and compare."""
     chance = random.Random(1)
     left = SAMPLE if sample else KILLS
-    chosen = ["evaluate"] if sample else list(RUNS)
-    share = -(-left // len(chosen))
+    chosen = ["evaluate"] if sample else product.wanted(RUNS)
+    share = -(-left // (1 if sample else len(RUNS)))
     for name in chosen:
         yield from _killed(name, share, chance)
 

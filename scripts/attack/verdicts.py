@@ -26,12 +26,21 @@ class Verdict:
     detail: str = ""
 
 
-def table(verdicts: Iterable[Verdict]) -> str:
-    """One row for each kind, one column for each outcome, as Markdown."""
-    counts: dict[str, dict[str, int]] = {}
+Counts = dict[str, dict[str, int]]
+"""Row of the table -> outcome -> how many attacks ended in it."""
+
+
+def count(verdicts: Iterable[Verdict]) -> Counts:
+    """How many attacks of each row ended how."""
+    counts: Counts = {}
     for verdict in verdicts:
         row = counts.setdefault(verdict.kind, dict.fromkeys((HELD, *BAD, SKIPPED), 0))
         row[verdict.outcome] += 1
+    return counts
+
+
+def table(parts: Iterable[Counts]) -> str:
+    """One row for each kind, one column for each outcome, as Markdown."""
     heads = (
         "kind",
         "tried",
@@ -44,7 +53,7 @@ def table(verdicts: Iterable[Verdict]) -> str:
     )
     lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
     total = [0] * (len(heads) - 1)
-    for kind, row in counts.items():
+    for kind, row in (pair for counts in parts for pair in counts.items()):
         numbers = [sum(row.values()) - row[SKIPPED], *(row[outcome] for outcome in BAD), row[SKIPPED]]
         total = [one + other for one, other in zip(total, numbers, strict=True)]
         lines.append("| " + " | ".join((kind, *map(str, numbers))) + " |")

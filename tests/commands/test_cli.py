@@ -28,7 +28,10 @@ KEYS = [
     "violations",
     "computation_time",
     "agent_errors",
+    "inputs",
     "edition",
+    "isolation",
+    "preparation_time",
 ]
 
 
@@ -110,7 +113,8 @@ def test_a_cluster_gives_what_this_machine_gives(hockey: Hockey) -> None:
     """But for the time that it took."""
     run = "evaluate --env 3dof-defend --agent hold --episodes 20 --disturbances server --json --quiet"
     here, there = (json.loads(hockey(f"{run} {where}")[1]) for where in ("--jobs 1", "--cluster local:1"))
-    assert here.pop("computation_time").keys() == there.pop("computation_time").keys()
+    for times in ("computation_time", "preparation_time"):
+        assert here.pop(times).keys() == there.pop(times).keys()
     assert here == there
 
 

@@ -70,7 +70,7 @@ def build_agent(
             "agent_id": agent_id,
             "kwargs": kwargs,
         }
-    return IsolatedAgent(launch, job, limits, seed)
+    return IsolatedAgent(launch, job, limits, seed, agent)
 
 
 def _own_interpreter(agent: str, mode: Mode, python: str) -> Interpreter:

@@ -14,7 +14,7 @@ from airhockey.evaluator.play.build_seats import Entrant, build_seats
 from airhockey.evaluator.play.recorder import Recorder, violated_steps
 from airhockey.evaluator.play.rollout import Rollout
 from airhockey.evaluator.play.seat import Care, Seat
-from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, Options, StepTime
+from airhockey.evaluator.runs.records import AgentProcess, Episode, EpisodeRecord, Job, Options, StepTime
 
 
 def play(job: Job, rollout: Rollout, recorder: Recorder) -> Episode:
@@ -41,6 +41,7 @@ def play(job: Job, rollout: Rollout, recorder: Recorder) -> Episode:
         absorbing=went_well and bool(rollout.over),
         violations=violated_steps(recorder.constraint_values[: recorder.steps], recorder.constraint_slices),
         computation_time=StepTime(mean=float(times.mean()), max=float(times.max())) if times.size else StepTime(),
+        process=seat.process,
         error=seat.failure,
         edition=rollout.env.edition.edition,
     )
@@ -80,7 +81,7 @@ class EpisodePlayer:
         rollout = self.open(job)
         (seat,) = rollout.seats
         if seat.failure is not None:
-            return failed(job, seat.failure, self.options.edition)
+            return failed(job, seat.failure, self.options.edition, seat.process)
         assert self._task is not None
         return play(job, rollout, self._task.recorder)
 
@@ -130,6 +131,7 @@ class EpisodePlayer:
         return _Task(name, env, seats, Recorder(env, env.reset(seed=0).size, self.profile.blurs_observations))
 
 
-def failed(job: Job, reason: str, edition: str) -> Episode:
+def failed(job: Job, reason: str, edition: str, process: AgentProcess | None = None) -> Episode:
     """An episode that the agent failed before its first step."""
-    return Episode(EpisodeRecord(env=job.env, index=job.index, error=reason, edition=edition), {})
+    where = AgentProcess() if process is None else process
+    return Episode(EpisodeRecord(env=job.env, index=job.index, process=where, error=reason, edition=edition), {})

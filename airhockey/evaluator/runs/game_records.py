@@ -6,7 +6,7 @@ from typing import Literal
 import msgspec
 
 from airhockey.envs.editions import DEFAULT
-from airhockey.evaluator.runs.records import Order, StepTime
+from airhockey.evaluator.runs.records import AgentProcess, Order, StepTime
 
 Side = Literal["home", "away"]
 Winner = Literal["home", "away", "draw"]
@@ -128,6 +128,7 @@ class PlayerResult(msgspec.Struct, frozen=True, kw_only=True):
         violations: Constraint name -> number of episodes that violated it; "computation_time" is one of them.
         held: Steps in which its command was held because it took too long.
         computation_time: Of `draw_action`, in [s].
+        process: Where it lived.
         failure: Why it forfeited.
     """
 
@@ -139,6 +140,7 @@ class PlayerResult(msgspec.Struct, frozen=True, kw_only=True):
     violations: dict[str, int]
     held: int
     computation_time: StepTime
+    process: AgentProcess = AgentProcess()
     failure: str | None = None
 
     @property

@@ -10,6 +10,7 @@ from airhockey.envs.disturbances import Disturbances
 from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES
 from airhockey.evaluator.judging.tasks import score as phase_score
 from airhockey.evaluator.runs.reader import Match, Run, Source, Tournament, Unreadable, short_name
+from airhockey.evaluator.runs.records import isolation_of
 from airhockey.reporting import words
 from airhockey.reporting.blocks import Row, badge, details, facts, paragraphs, section, table
 from airhockey.reporting.markup import Child, Markup, element, joined
@@ -111,7 +112,7 @@ def _conditions_of(source: Run | Match | Tournament) -> dict[str, str]:
             "edition": options.edition,
             "clock": options.clock,
             "interpolation order": str(options.interpolation_order),
-            "isolation": options.isolate,
+            "isolation": isolation_of(record.process for record in source.records) or options.isolate,
         }
     elif not isinstance(source, Run) and source.manifest:
         game = source.manifest.options.game
@@ -121,6 +122,8 @@ def _conditions_of(source: Run | Match | Tournament) -> dict[str, str]:
             "clock": game.clock,
             "steps of a game": f"{game.steps:,}",
             "rules": game.variant,
+            "isolation": isolation_of(side.process for record in source.records for side in (record.home, record.away))
+            or game.isolate,
         }
     if source.created:
         found["begun"] = source.created.replace("T", " ")

@@ -100,6 +100,8 @@ class Environment(Copyable):
         game: What the referee remembers of a game: score, faults, sides and timer.
         verdict: The referee's, of the latest step (`airhockey.envs.tasks.verdicts`).
         succeeded: Whether the task would count as a success if it ended after the latest step.
+        observation_slice, constraints_slice: Where the players' true observations and constraint values stand in
+            `simulation.flat`.
     """
 
     dt = CONTROL_PERIOD
@@ -166,12 +168,12 @@ class Environment(Copyable):
     @property
     def true_observation(self) -> Array:
         """The observation without disturbances, which judging uses."""
-        return self.simulation.flat[self._observations].copy()
+        return self.simulation.flat[self.observation_slice].copy()
 
     @property
     def constraint_values(self) -> Array:
         """Constraint values of the latest step, violated where positive; shape (K,), in the tournament (2, K)."""
-        values = self.simulation.flat[self._judged]
+        values = self.simulation.flat[self.constraints_slice]
         return values.reshape((2, -1)) if self.n_players == 2 else values
 
     @property
@@ -218,7 +220,7 @@ class Environment(Copyable):
         for perception, random in zip(self._perceptions, self._perception_randoms, strict=True):
             perception.reset(random)
         self.step_count, self.verdict, self.succeeded = 0, verdicts.GOING_ON, False
-        return self._observe()
+        return self.observe()
 
     def step(self, action: Any) -> tuple[Array, float, bool, dict[str, Any]]:
         """Advance by one control step of 0.02 s.
@@ -235,12 +237,12 @@ class Environment(Copyable):
         self._take(action)
         noise = self._no_noise
         if self.disturbances.torque > 0.0:
-            shape = (SUBSTEPS, *self._no_noise.shape[1:])
-            noise = self._plant_random.standard_normal(shape) * self._torque_deviation
+            noise = np.empty((SUBSTEPS, *self._no_noise.shape[1:]))
+            self.draw_torques(noise)
         self.simulation.step(self._action, noise, self.step_count)
         verdict = self.task.judge(self._referee, self.simulation.flat)
         self.verdict, self.succeeded = verdict & ~verdicts.SUCCESS, verdict >= verdicts.SUCCESS
-        return self._observe(), 0.0, self.verdict != verdicts.GOING_ON, self._info()
+        return self.observe(), 0.0, self.verdict != verdicts.GOING_ON, self._info()
 
     def get_state(self) -> State:
         """The present moment; what it holds is its own, and is not changed by anything that the environment does later."""
@@ -327,6 +329,34 @@ class Environment(Copyable):
         if self._is_game:
             self.game.serve[0] = self._start_random.choice([HOME_SERVES, AWAY_SERVES])
 
+    def move_into(self, memory: NDArray[Any], referee: NDArray[Any], flat: Array) -> None:
+        """Work from now on in arrays of the caller's, who steps many environments in one call (`airhockey.envs.vector`).
+
+        Args:
+            memory, referee: Of the types of `simulation.memory` and `referee`. Each of shape (1,).
+            flat: See `Simulation.move_into`.
+        """
+        self.simulation.move_into(memory, flat)
+        referee[:], self._referee = self._referee, referee
+        self._make_views()
+
+    @property
+    def referee(self) -> NDArray[Any]:
+        """The record of the rules and of the game. Shape (1,)."""
+        return self._referee
+
+    def draw_torques(self, into: Array) -> None:
+        """Draw what is added to the motors in a step, in [N·m], if anything is. Shape (20, robots, n), or (0, robots, n)."""
+        if self.disturbances.torque > 0.0:
+            into[:] = self._plant_random.standard_normal(into.shape) * self._torque_deviation
+
+    def observe(self) -> Array:
+        """What the players see now, with the noise that their streams draw for it: once a step, or the future is another."""
+        if not self._blurred:
+            return self.simulation.flat[self.observation_slice].copy()
+        true = self.simulation.readings.observation
+        return np.concatenate([see.observe(row) for see, row in zip(self._perceptions, true, strict=False)])
+
     def draw_starts_from(self, random: np.random.RandomState) -> None:
         """Draw all starts from this generator, which others may draw from, too."""
         self._start_random, self._start_is_own, self._episode = random, False, None
@@ -372,13 +402,13 @@ class Environment(Copyable):
         readings = self.simulation.readings
         base, width = readings.base.size, readings.base.shape[1]
         self._base = slice(base)
-        self._observations = slice(base, base + self.n_players * width)
+        self.observation_slice = slice(base, base + self.n_players * width)
         count = readings.constraints.shape[1]
         self._constraints = [
             {name: slice(first + part.start, first + part.stop) for name, part in self.constraint_slices.items()}
             for first in (2 * base, 2 * base + count)[: self.n_players]
         ]
-        self._judged = slice(2 * base, 2 * base + self.n_players * count)
+        self.constraints_slice = slice(2 * base, 2 * base + self.n_players * count)
         self._jerk = slice(2 * base + readings.constraints.size, self.simulation.flat.size)
 
     def _take(self, action: Any) -> None:
@@ -397,12 +427,6 @@ class Environment(Copyable):
             label = f", player {player + 1}" if self.n_players == 2 else ""
             action = form.check(action, self.step_count, label)
         self._slots[player][...] = action
-
-    def _observe(self) -> Array:
-        if not self._blurred:
-            return self.simulation.flat[self._observations].copy()
-        true = self.simulation.readings.observation
-        return np.concatenate([see.observe(row) for see, row in zip(self._perceptions, true, strict=False)])
 
     def _info(self) -> dict[str, Any]:
         flat = self.simulation.flat

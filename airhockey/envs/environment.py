@@ -100,6 +100,9 @@ class Environment(Copyable):
         game: What the referee remembers of a game: score, faults, sides and timer.
         verdict: The referee's, of the latest step (`airhockey.envs.tasks.verdicts`).
         succeeded: Whether the task would count as a success if it ended after the latest step.
+        perceptions: Each player's.
+        plant_random: The stream of the plant: its mismatch, and the torques that are added to the motors'.
+        torque_deviation: Of those torques, in [N·m]. Shape (n,).
         observation_slice, constraints_slice: Where the players' true observations and constraint values stand in
             `simulation.flat`.
     """
@@ -146,16 +149,16 @@ class Environment(Copyable):
         self._make_views()
         self._make_slices()
         self._no_noise = np.zeros((0, self.n_agents, robot.n_joints))
-        self._torque_deviation = self.disturbances.torque * self.simulation.arm.torque_limit
+        self.torque_deviation = self.disturbances.torque * self.simulation.arm.torque_limit
         self._mismatch = PlantMismatch(self.simulation.model, robot, self.n_agents)
         self._blurred = self.disturbances.blurs_observations
-        self._perceptions = [Perception(self.disturbances, robot.n_joints) for _ in range(self.n_players)]
+        self.perceptions = [Perception(self.disturbances, robot.n_joints) for _ in range(self.n_players)]
         self._start_is_own = True
         self._episode: Episode | None = None
         self._draws_at_steps = self._blurred or self.disturbances.torque > 0.0
         self._made_for = (name, tuple(orders), edition_name, self.disturbances)
         self._start_random = np.random.RandomState(0)
-        self._plant_random = np.random.default_rng(0)
+        self.plant_random = np.random.default_rng(0)
         self._perception_randoms: list[np.random.Generator] = []
         self._seed_streams(np.random.SeedSequence())
         self.reset()
@@ -211,16 +214,16 @@ class Environment(Copyable):
         if start_random is not None:
             self.draw_starts_from(start_random)
         self._episode = None
-        self._mismatch.apply(self.disturbances.mismatch, self._plant_random)
+        self._mismatch.apply(self.disturbances.mismatch, self.plant_random)
         puck = self._draw_puck()
         if state is None:
             self.simulation.reset(*puck)
         else:
             self._restore(np.asarray(state, dtype=np.float64))
-        for perception, random in zip(self._perceptions, self._perception_randoms, strict=True):
+        for perception, random in zip(self.perceptions, self._perception_randoms, strict=True):
             perception.reset(random)
         self.step_count, self.verdict, self.succeeded = 0, verdicts.GOING_ON, False
-        return self.observe()
+        return self._observe()
 
     def step(self, action: Any) -> tuple[Array, float, bool, dict[str, Any]]:
         """Advance by one control step of 0.02 s.
@@ -237,12 +240,12 @@ class Environment(Copyable):
         self._take(action)
         noise = self._no_noise
         if self.disturbances.torque > 0.0:
-            noise = np.empty((SUBSTEPS, *self._no_noise.shape[1:]))
-            self.draw_torques(noise)
+            shape = (SUBSTEPS, *self._no_noise.shape[1:])
+            noise = self.plant_random.standard_normal(shape) * self.torque_deviation
         self.simulation.step(self._action, noise, self.step_count)
         verdict = self.task.judge(self._referee, self.simulation.flat)
         self.verdict, self.succeeded = verdict & ~verdicts.SUCCESS, verdict >= verdicts.SUCCESS
-        return self.observe(), 0.0, self.verdict != verdicts.GOING_ON, self._info()
+        return self._observe(), 0.0, self.verdict != verdicts.GOING_ON, self._info()
 
     def get_state(self) -> State:
         """The present moment; what it holds is its own, and is not changed by anything that the environment does later."""
@@ -281,11 +284,11 @@ class Environment(Copyable):
     state = property(get_state, set_state, doc="The present moment; see `get_state` and `set_state`.")
 
     def _save_streams(self) -> tuple[Any, ...]:
-        return (self._plant_random.bit_generator.state, *(perception.save() for perception in self._perceptions))
+        return (self.plant_random.bit_generator.state, *(perception.save() for perception in self.perceptions))
 
     def _restore_streams(self, streams: tuple[Any, ...]) -> None:
-        self._plant_random.bit_generator.state = streams[0]
-        for perception, saved in zip(self._perceptions, streams[1:], strict=True):
+        self.plant_random.bit_generator.state = streams[0]
+        for perception, saved in zip(self.perceptions, streams[1:], strict=True):
             perception.restore(saved)
 
     def _restore_episode(self, episode: Episode) -> None:
@@ -345,18 +348,6 @@ class Environment(Copyable):
         """The record of the rules and of the game. Shape (1,)."""
         return self._referee
 
-    def draw_torques(self, into: Array) -> None:
-        """Draw what is added to the motors in a step, in [N·m], if anything is. Shape (20, robots, n), or (0, robots, n)."""
-        if self.disturbances.torque > 0.0:
-            into[:] = self._plant_random.standard_normal(into.shape) * self._torque_deviation
-
-    def observe(self) -> Array:
-        """What the players see now, with the noise that their streams draw for it: once a step, or the future is another."""
-        if not self._blurred:
-            return self.simulation.flat[self.observation_slice].copy()
-        true = self.simulation.readings.observation
-        return np.concatenate([see.observe(row) for see, row in zip(self._perceptions, true, strict=False)])
-
     def draw_starts_from(self, random: np.random.RandomState) -> None:
         """Draw all starts from this generator, which others may draw from, too."""
         self._start_random, self._start_is_own, self._episode = random, False, None
@@ -370,7 +361,7 @@ class Environment(Copyable):
         else:
             self._start_random = np.random.RandomState(seed)
         self._start_is_own = True
-        self._plant_random = np.random.default_rng(children[1])
+        self.plant_random = np.random.default_rng(children[1])
         self._perception_randoms = [np.random.default_rng(child) for child in children[2 : 2 + self.n_players]]
         self.new_game()
 
@@ -427,6 +418,12 @@ class Environment(Copyable):
             label = f", player {player + 1}" if self.n_players == 2 else ""
             action = form.check(action, self.step_count, label)
         self._slots[player][...] = action
+
+    def _observe(self) -> Array:
+        if not self._blurred:
+            return self.simulation.flat[self.observation_slice].copy()
+        true = self.simulation.readings.observation
+        return np.concatenate([see.observe(row) for see, row in zip(self.perceptions, true, strict=False)])
 
     def _info(self) -> dict[str, Any]:
         flat = self.simulation.flat

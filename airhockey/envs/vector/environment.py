@@ -12,7 +12,8 @@ from airhockey.envs.environment import Environment, Order, Seed, State
 from airhockey.envs.kernel.control_step import DONE
 from airhockey.envs.specs import SUBSTEPS
 from airhockey.envs.tasks import verdicts
-from airhockey.envs.vector.stepping import KINDS, step_many
+from airhockey.envs.vector.perception import give_back, new_senses, take_over
+from airhockey.envs.vector.stepping import KINDS, Fleet, step_many
 from airhockey.envs.vector.threads import Threads
 from airhockey.errors import ActionError, ConfigurationError
 
@@ -63,6 +64,7 @@ class VectorEnvironment:
     Attributes:
         num_envs: N.
         action_shape: Of one environment's action: (n,), (2, n) and so on by the order; (2, …) in the tournament.
+        fleet: What compiled code steps.
         single: An environment of the same kind, for what is the same in all: `env_info`, `formats`, `horizon`. Not stepped.
     """
 
@@ -84,21 +86,27 @@ class VectorEnvironment:
         self.single = single = Environment(name, interpolation_order, disturbances, edition_name)
         self._threads = Threads(threads)
         self._environments = [single.copy() for _ in range(n)]
-        self._kind = KINDS.index(single.edition.environment(single.name).kind)
         form, robots, joints = single.formats[0], single.n_agents, single.simulation.robot.n_joints
         self.action_shape = form.shape if single.n_players == 1 else (2, *form.shape)
-        self._memories = np.zeros(n, single.simulation.memory.dtype)
-        self._referees = np.zeros(n, single.referee.dtype)
-        self._left = np.zeros((n, single.simulation.flat.size))
-        self._actions = np.zeros((n, robots, max(form.rows, 2 * (robots > single.n_players)), joints))
-        self._slots = self._actions[:, : single.n_players, : form.rows].reshape(n, single.n_players, form.rows, joints)
-        noisy = single.disturbances.torque > 0.0
-        self._noise = np.zeros((n, SUBSTEPS if noisy else 0, robots, joints))
-        self._codes, self._counter = np.zeros(n, np.int64), np.zeros(1, np.int64)
-        self._verdicts = np.zeros(n, np.int64)
+        rows = max(form.rows, 2 * (robots > single.n_players))
+        shaken = single.disturbances.torque > 0.0
+        self.fleet = Fleet(
+            KINDS.index(single.edition.environment(single.name).kind),
+            np.zeros(n, single.simulation.memory.dtype),
+            np.zeros(n, single.referee.dtype),
+            np.zeros((n, robots, rows, joints)),
+            np.zeros((n, SUBSTEPS if shaken else 0, robots, joints)),
+            np.zeros((n, single.simulation.flat.size)),
+            single.observation_slice.start,
+            np.zeros(n, np.int64),
+            np.zeros(n, np.int64),
+            *new_senses(single, n),
+        )
+        self._slots = self.fleet.actions[:, : single.n_players, : form.rows]
+        self._counter = np.zeros(1, np.int64)
         self._steps, self._game_steps = np.zeros(n, np.int64), np.zeros(n, np.int64)
         for i, env in enumerate(self._environments):
-            env.move_into(self._memories[i : i + 1], self._referees[i : i + 1], self._left[i])
+            env.move_into(self.fleet.memories[i : i + 1], self.fleet.referees[i : i + 1], self.fleet.left[i])
         self.reset(np.random.SeedSequence().spawn(n) if seed is None else seed)
 
     def new_batch(self) -> Batch:
@@ -142,14 +150,11 @@ class VectorEnvironment:
         """
         batch = self.new_batch() if into is None else into
         self._take(actions)
-        if self._noise.size:
-            for env, noise in zip(self._environments, self._noise, strict=True):
-                env.draw_torques(noise)
-        before = self._referees["score"].copy() if self.single.n_players == 2 else None
-        self._simulate()
+        before = self.fleet.referees["score"].copy() if self.single.n_players == 2 else None
+        self._simulate(batch.observations)
         self._read(batch)
         if before is not None:
-            gained = self._referees["score"] - before
+            gained = self.fleet.referees["score"] - before
             batch.rewards[:, 0] = gained[:, 0] - gained[:, 1]
             batch.rewards[:, 1] = -batch.rewards[:, 0]
         else:
@@ -171,7 +176,7 @@ class VectorEnvironment:
             env.set_state(moment)
             self._keep(i)
             self._steps[i], self._game_steps[i] = env.step_count, steps
-            self._verdicts[i] = env.verdict + (verdicts.SUCCESS if env.succeeded else 0)
+            self.fleet.verdicts[i] = env.verdict + (verdicts.SUCCESS if env.succeeded else 0)
 
     def close(self) -> None:
         """End the threads."""
@@ -186,35 +191,26 @@ class VectorEnvironment:
             )
         self._slots[...] = given.reshape(self._slots.shape)
 
-    def _simulate(self) -> None:
+    def _simulate(self, observations: Array) -> None:
         self._steps += 1
         self._game_steps += 1
         self._counter[0] = 0
-        self._threads.run(
-            step_many,
-            *(self._kind, self._memories, self._referees, self._actions, self._noise),
-            *(self._left, self._codes, self._verdicts, self._counter),
-        )
-        if self._codes.any():
-            first = int(np.flatnonzero(self._codes != DONE)[0])
+        self._threads.run(step_many, self.fleet, observations, self._counter)
+        if self.fleet.codes.any():
+            first = int(np.flatnonzero(self.fleet.codes != DONE)[0])
             simulation, step = self._environments[first].simulation, int(self._steps[first])
             try:
-                simulation.complain(int(self._codes[first]), self._actions[first], step)
+                simulation.complain(int(self.fleet.codes[first]), self.fleet.actions[first], step)
             finally:
                 self._keep(first)
 
     def _read(self, batch: Batch) -> None:
         """Copy what the step left, and see whose episode is over."""
         single = self.single
-        if single.disturbances.blurs_observations:
-            for seen, env in zip(batch.observations, self._environments, strict=True):
-                seen[:] = env.observe()
-        else:
-            batch.observations[:] = self._left[:, single.observation_slice]
         batch.final_observations[:] = batch.observations
-        batch.constraints[:] = self._left[:, single.constraints_slice]
-        batch.verdicts[:] = self._verdicts & ~verdicts.SUCCESS
-        np.greater_equal(self._verdicts, verdicts.SUCCESS, out=batch.success)
+        batch.constraints[:] = self.fleet.left[:, single.constraints_slice]
+        batch.verdicts[:] = self.fleet.verdicts & ~verdicts.SUCCESS
+        np.greater_equal(self.fleet.verdicts, verdicts.SUCCESS, out=batch.success)
         np.not_equal(batch.verdicts, verdicts.GOING_ON, out=batch.terminated)
         np.greater_equal(self._game_steps, single.horizon, out=batch.truncated)
         if single.n_players == 1:
@@ -232,15 +228,17 @@ class VectorEnvironment:
     def _begin(self, i: int, seed: Seed, observations: Array) -> None:
         observations[i] = self._environments[i].reset(seed)
         self._keep(i)
-        self._steps[i], self._verdicts[i] = 0, verdicts.GOING_ON
+        self._steps[i], self.fleet.verdicts[i] = 0, verdicts.GOING_ON
 
     def _keep(self, i: int) -> None:
-        """An environment made itself a new array of readings: have it write here again."""
+        """After a reset: its streams are perhaps others, and its array of readings is a new one; have it write here again."""
+        take_over(self.fleet.senses, i, self._environments[i])
         simulation = self._environments[i].simulation
-        self._left[i], simulation.flat = simulation.flat, self._left[i]
+        self.fleet.left[i], simulation.flat = simulation.flat, self.fleet.left[i]
 
     def _synced(self, i: int) -> Environment:
-        env, verdict = self._environments[i], int(self._verdicts[i])
+        env, verdict = self._environments[i], int(self.fleet.verdicts[i])
+        give_back(self.fleet.senses, i, env)
         env.step_count = int(self._steps[i])
         env.verdict, env.succeeded = verdict & ~verdicts.SUCCESS, verdict >= verdicts.SUCCESS
         return env

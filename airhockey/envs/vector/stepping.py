@@ -1,6 +1,6 @@
 """One control step of many environments, which any number of threads share out among themselves."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba.core import types
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from airhockey.envs.kernel.control_step import DONE, control_step
 from airhockey.envs.tasks import defend, game, hit, prepare
 from airhockey.envs.vector.compiling import compiled
+from airhockey.envs.vector.perception import Profile, Senses, observe, shake
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
@@ -22,7 +23,7 @@ _judge_hit, _judge_defend, _judge_prepare, _judge_game = hit.judge, defend.judge
 
 
 @intrinsic
-def _next(typing_context: Any, counter: Any) -> Any:
+def next_of(typing_context: Any, counter: Any) -> Any:
     """The counter's present value, and one more for whoever asks next, in whatever thread. Shape (1,), integers."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -44,35 +45,74 @@ def judge(kind: int, referee: Any, left: Array) -> int:
     return _judge_game(referee, left)
 
 
+class Fleet(NamedTuple):
+    """N environments of a kind, as compiled code steps them.
+
+    Attributes:
+        kind: Index into `KINDS`.
+        memories, referees: The simulations' and the referees' records. Each of shape (N,).
+        actions: Padded to the same number of rows. Shape (N, R, rows, n).
+        noise: Torques added in each substep, in [N·m]. Shape (N, 20, R, n), or (N, 0, R, n) for none.
+        left: What the latest step left (`kernel.observation.readings_of`). Shape (N, size).
+        first: Where the players' true observations begin there.
+        codes: `DONE` or what went wrong in it (`kernel.control_step`). Shape (N,).
+        verdicts: The referees', of the latest step. Shape (N,).
+        profile, senses: Disturbances.
+    """
+
+    kind: int
+    memories: Any
+    referees: Any
+    actions: Array
+    noise: Array
+    left: Array
+    first: int
+    codes: Counts
+    verdicts: Counts
+    profile: Profile
+    senses: Senses
+
+
 @compiled
-def step_many(
-    kind: int,
-    memories: Any,
-    referees: Any,
-    actions: Array,
-    noise: Array,
-    left: Array,
-    codes: Counts,
-    verdicts: Counts,
-    counter: Counts,
-) -> None:
+def step_one(fleet: Fleet, i: int, observation: Array) -> int:
+    """Environment i by one control step; gives its code.
+
+    Args:
+        fleet: Its action is there.
+        i: Which one.
+        observation: Written: what the players see. Shape (P D,).
+    """
+    if fleet.senses.shaken:
+        shake(fleet.profile, fleet.senses, i, fleet.noise[i])
+    left = fleet.left[i]
+    code = control_step(fleet.memories[i : i + 1], fleet.actions[i], fleet.noise[i], left)
+    fleet.codes[i] = code
+    if code != DONE:
+        return code
+    fleet.verdicts[i] = judge(fleet.kind, fleet.referees[i : i + 1], left)
+    if fleet.senses.blurred:
+        players, width = fleet.senses.bias.shape[1], fleet.senses.bias.shape[2]
+        for p in range(players):
+            a = p * width
+            true = left[fleet.first + a : fleet.first + a + width]
+            observe(fleet.profile, fleet.senses, i, p, true, observation[a : a + width])
+    else:
+        for k in range(observation.shape[0]):
+            observation[k] = left[fleet.first + k]
+    return code
+
+
+@compiled
+def step_many(fleet: Fleet, observations: Array, counter: Counts) -> None:
     """Step environments until none is left; called by several threads at once, each takes the next that nobody has taken.
 
     Args:
-        kind: Index into `KINDS`.
-        memories: The simulations' records. Shape (N,).
-        referees: The referees' records. Shape (N,).
-        actions: Padded to the same number of rows. Shape (N, R, rows, n).
-        noise: Torques added in each substep, in [N·m]. Shape (N, 20, R, n), or (N, 0, R, n) for none.
-        left: Written: what each step leaves (`kernel.observation.readings_of`). Shape (N, size).
-        codes: Written: `DONE` or what went wrong (`kernel.control_step`). Shape (N,).
-        verdicts: Written: the referees'. Shape (N,).
+        fleet: The environments.
+        observations: Written. Shape (N, P D).
         counter: How many were taken; 0 to begin with. Shape (1,).
     """
     while True:
-        i = _next(counter)
-        if i >= memories.shape[0]:
+        i = next_of(counter)
+        if i >= observations.shape[0]:
             return
-        codes[i] = control_step(memories[i : i + 1], actions[i], noise[i], left[i])
-        if codes[i] == DONE:
-            verdicts[i] = judge(kind, referees[i : i + 1], left[i])
+        step_one(fleet, i, observations[i])

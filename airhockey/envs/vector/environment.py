@@ -15,7 +15,7 @@ from airhockey.envs.tasks import verdicts
 from airhockey.envs.vector.perception import give_back, new_senses, take_over
 from airhockey.envs.vector.stepping import KINDS, Fleet, step_many
 from airhockey.envs.vector.threads import Threads
-from airhockey.errors import ActionError, ConfigurationError
+from airhockey.errors import ActionError, ConfigurationError, SimulationError
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -201,6 +201,8 @@ class VectorEnvironment:
             simulation, step = self._environments[first].simulation, int(self._steps[first])
             try:
                 simulation.complain(int(self.fleet.codes[first]), self.fleet.actions[first], step)
+            except (ActionError, SimulationError) as error:
+                raise type(error)(f"environment {first}, {error}") from None
             finally:
                 self._keep(first)
 

@@ -6,7 +6,7 @@ import pytest
 from airhockey import envs
 from airhockey.envs.tasks.game import points_reward
 
-STEPS = 130
+STEPS = 90
 EVERY = [(name, "2023") for name in envs.ENVIRONMENTS] + [("hit", "2025"), ("hit_single", "2025")]
 
 
@@ -45,10 +45,12 @@ class Alone:
         return [observation, *told[1:], told[0]]
 
 
-@pytest.mark.parametrize("disturbances", ["ideal", "server"])
-@pytest.mark.parametrize(("name", "edition"), EVERY)
+CASES = [(*which, profile) for which in EVERY for profile in ("ideal", "server")] + [("7dof-prepare", "2023", "harsh")]
+
+
+@pytest.mark.parametrize(("name", "edition", "disturbances"), CASES)
 def test_a_batch_is_its_environments(name, edition, disturbances):
-    alone = [Alone(name, edition, 5 + i, disturbances, 60) for i in range(8)]
+    alone = [Alone(name, edition, 5 + i, disturbances, 40) for i in range(8)]
     actions = moves(alone[0].env, 8, STEPS)
     starts = [one.observation for one in alone]
     expected = [[one.step(action) for one, action in zip(alone, row, strict=True)] for row in actions]
@@ -57,9 +59,9 @@ def test_a_batch_is_its_environments(name, edition, disturbances):
     )
     for count, threads in [(1, 1), (1, 2), (3, 1), (3, 2), (8, 1), (8, 2)]:
         vec = envs.make_vec(name, count, threads, 5, disturbances=disturbances, edition=edition)
-        vec.single.horizon = 60
+        vec.single.horizon = 40
         for env in vec._environments:
-            env.horizon = 60
+            env.horizon = 40
         batch = vec.reset(seed=5)
         assert batch.observations.tobytes() == np.array(starts[:count]).tobytes()
         for row, step in zip(expected, actions, strict=True):

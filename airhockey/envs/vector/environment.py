@@ -109,6 +109,16 @@ class VectorEnvironment:
             env.move_into(self.fleet.memories[i : i + 1], self.fleet.referees[i : i + 1], self.fleet.left[i])
         self.reset(np.random.SeedSequence().spawn(n) if seed is None else seed)
 
+    @property
+    def horizon(self) -> int:
+        """Steps after which an episode is truncated, in the tournament a game."""
+        return self.single.horizon
+
+    @property
+    def constraint_slices(self) -> dict[str, slice]:
+        """Where each constraint's values stand in a row of `Batch.constraints`; in the tournament, those of player 1."""
+        return self.single.constraint_slices
+
     def new_batch(self) -> Batch:
         """Arrays for `reset` and `step` to write into."""
         n, players = self.num_envs, self.single.n_players

@@ -4,6 +4,7 @@
     import gymnasium
 
     env = gymnasium.make("airhockey/7dof-defend-v0", disturbances="server")
+    vec = gymnasium.make_vec("airhockey/7dof-defend-v0", num_envs=64, threads=2)
 
 Importing this module registers the ids (Gymnasium has no plug-ins any more); `gymnasium.make` imports it by itself where the
 id says so: "airhockey.envs.gymnasium:airhockey/7dof-defend-v0".
@@ -26,6 +27,7 @@ except ImportError as error:
     ) from error
 
 from airhockey.envs.copying import Copyable
+from airhockey.envs.editions import edition as rules
 from airhockey.envs.environment import Environment, Order
 from airhockey.envs.rendering.render import FRAMES_PER_SECOND, MODES, Renderer
 from airhockey.envs.tasks.reward import RewardedState
@@ -44,9 +46,9 @@ TASKS = {
 class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
     """One of the challenge's tasks; `airhockey.envs.Environment` says what an observation and an action are.
 
-    An observation's space is unbounded: joints overshoot and noise reaches beyond any limit. `info` holds `success`,
-    `constraints_value` and `jerk`. An episode is truncated at the task's horizon. It can be copied, pickled, saved and
-    restored as `airhockey.envs.Environment` can.
+    An observation's space is unbounded: joints overshoot and noise reaches beyond any limit. `info` holds `success`
+    (and `is_success`, the same under the name that libraries look for), `constraints_value` and `jerk`. An episode is
+    truncated at the task's horizon. It can be copied, pickled, saved and restored as `airhockey.envs.Environment` can.
 
     Args:
         name: "3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend" or "7dof-prepare"; in the edition of 2025 "hit",
@@ -113,7 +115,7 @@ class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
         else:
             reward = float(info["success"]) if absorbing or truncated else 0.0
         self._show()
-        return observation, reward, absorbing, truncated, info
+        return observation, reward, absorbing, truncated, info | {"is_success": bool(info["success"])}
 
     def render(self) -> Any:
         """The present moment: an array of shape (height, width, 3) for "rgb_array"; "human" shows every step by itself."""
@@ -149,7 +151,13 @@ def register() -> None:
             id_ = f"{NAMESPACES[edition]}/{name}-v0"
             if id_ not in gymnasium.registry:
                 made = {"name": name, "edition": edition}
-                gymnasium.register(id_, entry_point=f"{__name__}:AirHockeyEnv", kwargs=made, order_enforce=True)
+                gymnasium.register(
+                    id_,
+                    entry_point=f"{__name__}:AirHockeyEnv",
+                    vector_entry_point="airhockey.envs.vector.gymnasium:task_vector_env",
+                    max_episode_steps=rules(edition).horizon.task,
+                    kwargs=made,
+                )
 
 
 register()

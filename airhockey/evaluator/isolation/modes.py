@@ -56,6 +56,15 @@ def choose(agent: str, asked: str | None = None) -> Choice:
     return Choice("process", f"{agent!r} runs in a process of its own, but without a sandbox ({why}): {_UNPROTECTED}")
 
 
+def check_python(agent: str, isolate: str, python: str | None) -> None:
+    """Only a submission in a process of its own can have another interpreter; raises `ConfigurationError`."""
+    if python is not None and (agent.startswith(REMOTE) or not is_submission(agent) or isolate == "none"):
+        raise ConfigurationError(
+            f"--python is for submissions in a process of their own; {agent!r} runs with the evaluator "
+            "(--isolate process or sandbox for a submission)"
+        )
+
+
 def host_and_port(address: str) -> tuple[str, int]:
     """What tcp://HOST:PORT names; raises `ConfigurationError`."""
     host, _, port = address.removeprefix(REMOTE).rstrip("/").rpartition(":")

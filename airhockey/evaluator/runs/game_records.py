@@ -58,6 +58,9 @@ class GameJob(msgspec.Struct, frozen=True):
         home, away: Names of the players.
         home_agent, away_agent: What they are: a name of the registry or the absolute path of a submission.
         seed: Of the game.
+        home_order, away_order: Interpolation orders.
+        home_python, away_python: Other interpreters for submissions' processes, see `records.Options.python`.
+        home_settings, away_settings: Of our own players' controllers, see `records.Options.settings`.
     """
 
     key: str
@@ -68,6 +71,10 @@ class GameJob(msgspec.Struct, frozen=True):
     seed: int
     home_order: Order = "agent"
     away_order: Order = "agent"
+    home_python: str | None = None
+    away_python: str | None = None
+    home_settings: tuple[str, ...] = ()
+    away_settings: tuple[str, ...] = ()
 
 
 class Status(msgspec.Struct, frozen=True, kw_only=True):

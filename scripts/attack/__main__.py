@@ -1,7 +1,7 @@
 """Attacks the product, and says what held.
 
     python scripts/attack                       everything; takes hours on one core
-    python scripts/attack --sample              some of each kind; minutes
+    python scripts/attack --sample              some of each kind; half a minute
     python scripts/attack --only escapes kills  these kinds
     python scripts/attack --keep build/attack --table docs/security.md
                                                 write the table there, with what other calls have kept of other kinds

@@ -29,7 +29,8 @@ class Base:
         self.agent.episode_start()
     def draw_action(self, observation):
         self.steps += 1
-        self.cheat(observation)
+        if self.steps % 50 < 3:
+            self.cheat(observation)
         return self.agent.draw_action(observation)
     def cheat(self, observation):
         pass
@@ -176,7 +177,8 @@ class Agent(Base):
                     os.set_blocking(fd, True)
                 except OSError:
                     pass
-        compute(0.05)
+        if self.steps % 50 < 3:
+            compute(0.05)
         return action
 """),
     "replies written by a thread": Cheat("""
@@ -418,13 +420,13 @@ SEEDS = {"from its own seed, --seed 7": "7", "from its own seed, --seed random":
 
 def attack(sample: bool) -> Iterator[Verdict]:
     """Play with each cheat, and look at what is on record."""
-    for name in product.wanted(TIME)[: 3 if sample else None]:
+    for name in product.wanted(TIME)[: 1 if sample else None]:
         yield _played("cheats with time", name, TIME[name].code, TIME[name].clock)
     for name in () if sample else product.wanted(WAITS):
         yield _waited("entries that make others wait", name, WAITS[name])
-    for name in product.wanted(ACTIONS)[:: 10 if sample else 1]:
+    for name in ("an array that ends the program",) if sample else product.wanted(ACTIONS):
         yield _odd("actions that are none", name, ODD.replace("ACTION", ACTIONS[name]))
-    for name in product.wanted(SEEDS):
+    for name in () if sample else product.wanted(SEEDS):
         yield _foreseen("knowing the future", name, SEEDS[name])
 
 

@@ -7,14 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.control.kinematics import spec_of
-from airhockey.agents.estimation.kalman import filter_record
-from airhockey.agents.estimation.motion import puck_motion
-from airhockey.agents.estimation.watch import layout_of
+from airhockey.agents.learned.actions import ACTIONS, new_controls
+from airhockey.agents.learned.features import new_sights, width_of
 from airhockey.envs.disturbances import Disturbances
 from airhockey.envs.vector.environment import Batch, Seeds, VectorEnvironment
 from airhockey.errors import ActionError, ConfigurationError, unknown
-from airhockey.learning.envs.actions import ACTIONS, new_controls
-from airhockey.learning.envs.features import STACK, Sights, width_of
 from airhockey.learning.envs.stepping import Learner, begin_one, play_many, warm_up
 
 Array = NDArray[np.float64]
@@ -24,12 +21,12 @@ REWARDS = ("shaped", "success")
 
 
 class LearningBatch(VectorEnvironment):
-    """N environments of a task with a learner's actions, observations and rewards; see the pages beside this one.
+    """N environments of a task with the actions and observations of `airhockey.agents.learned`, and with rewards.
 
     Args:
         name, num_envs, disturbances, edition_name, threads, seed: See `VectorEnvironment`. One player's tasks only.
-        actions: "joints", "tip" or "mallet" (`actions`).
-        observations: "features" (`features`) or "raw", the environment's own.
+        actions: "joints", "tip" or "mallet" (`airhockey.agents.learned.actions`).
+        observations: "features" (`airhockey.agents.learned.features`) or "raw", the environment's own.
         reward: "shaped" (`rewards`), or "success": 1 for a success at the end of an episode, else 0.
         repeat: Control steps that an action lasts.
         discount: γ of the shaped reward, for one action: the learner's own.
@@ -106,18 +103,7 @@ class LearningBatch(VectorEnvironment):
         actions, observations, reward, repeat, discount = self._choice
         controls = new_controls(actions, spec_of(single.env_info), n)
         joints = actions == "joints"
-        watch, layout = single.env_info, layout_of(single.env_info)
-        sights = Sights(
-            np.repeat(filter_record(float(watch["dt"]), None, None, layout), n),
-            np.zeros((n, 6, 5)),
-            np.zeros((n, 2, 2)),
-            single.n_agents == 2,
-            np.zeros((n, STACK, 4)),
-            np.zeros((n, 4)),
-            *np.zeros((2, n, 2)),
-            joints,
-            puck_motion().constants,
-        )
+        sights = new_sights(single.env_info, joints, n)
         part = single.constraints_slice
         self.learner = Learner(
             repeat, single.horizon, discount, reward == "shaped", controls, sights,

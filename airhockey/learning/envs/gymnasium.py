@@ -6,7 +6,7 @@
     vec = gymnasium.make_vec("airhockey/7dof-defend-tip-v0", num_envs=16, threads=2)
     env = gymnasium.make("airhockey/7dof-hit-mallet-v0", disturbances="server")
 
-Tasks are those of `airhockey.envs.gymnasium` of 2023, actions those of `airhockey.learning.envs.actions`. An observation is
+Tasks are those of `airhockey.envs.gymnasium` of 2023, actions those of `airhockey.agents.learned.actions`. An observation is
 what `features` says, a reward what `rewards` says, and both can be chosen: see `LearningBatch`.
 """
 
@@ -17,12 +17,12 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from airhockey.agents.learned.actions import ACTIONS
+from airhockey.agents.learned.features import LARGEST
 from airhockey.envs.editions import edition
 from airhockey.envs.gymnasium import NAMESPACES, TASKS
 from airhockey.envs.vector.gymnasium import BatchVectorEnv
-from airhockey.learning.envs.actions import ACTIONS
 from airhockey.learning.envs.batch import LearningBatch
-from airhockey.learning.envs.features import LARGEST
 
 Array = NDArray[Any]
 

@@ -5,16 +5,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents.estimation.watch import look
-from airhockey.agents.table import BASE_X
+from airhockey.agents.learned import actions, features
+from airhockey.agents.learned.actions import Controls, command, take_position
+from airhockey.agents.learned.features import Features, Sights, see, write
 from airhockey.envs.specs import JOINTS
 from airhockey.envs.tasks.verdicts import GOING_ON
 from airhockey.envs.tasks.verdicts import SUCCESS as SUCCEEDED
 from airhockey.envs.vector.stepping import DONE, Fleet, next_of, step_one
-from airhockey.learning.envs import actions, features
-from airhockey.learning.envs.actions import Controls, command, take_position
 from airhockey.learning.envs.compiling import compiled
-from airhockey.learning.envs.features import Features, Sights, remember, write
 from airhockey.learning.envs.rewards import FAILURE, SUCCESS, potential
 
 Array = NDArray[np.float64]
@@ -58,7 +56,6 @@ def warm_up(fleet: Fleet, learner: Learner) -> None:
     controls, sights = learner.controls, learner.sights
     actions.warm_up(controls)
     features.warm_up(sights)
-    look(learner.raw[0], sights.tip[0], sights.watches[:1], sights.puck[0], sights.mallets[0])
     potential(fleet.kind, sights.puck[0, 0], controls.tip[0], sights.constants)
 
 
@@ -87,7 +84,7 @@ def play_one(fleet: Fleet, learner: Learner, i: int, action: Array, written: Fea
             return
         learner.steps[i] += 1
         _count_violation(learner, i, fleet.left[i])
-        see(learner, i, False)
+        see(learner.sights, learner.controls, i, learner.raw[i], False)
         verdict = fleet.verdicts[i]
         success = verdict >= SUCCEEDED
         ended = verdict % SUCCEEDED != GOING_ON or learner.steps[i] >= learner.horizon
@@ -110,23 +107,10 @@ def begin_one(fleet: Fleet, learner: Learner, i: int, written: Features) -> None
     """Begin an episode from the environment's own first observation."""
     n = learner.controls.q.shape[1]
     take_position(learner.controls, i, learner.raw[i, JOINTS : JOINTS + n])
-    see(learner, i, True)
+    see(learner.sights, learner.controls, i, learner.raw[i], True)
     learner.potential[i] = _potential(fleet, learner, i)
     if written.size > 0:
         write(learner.sights, learner.controls, i, 1.0, written)
-
-
-@compiled
-def see(learner: Learner, i: int, first: bool) -> None:
-    """Take an observation into the filter and into the stack."""
-    sights, controls = learner.sights, learner.controls
-    if first:
-        sights.watches[i].begun = False
-    seen, tip, raw = sights.seen[i], sights.tip[i], learner.raw[i]
-    seen[0], seen[1] = raw[0] + BASE_X, raw[1]
-    tip[0], tip[1] = controls.tip[i, 0] - BASE_X, controls.tip[i, 1]
-    look(raw, tip, sights.watches[i : i + 1], sights.puck[i], sights.mallets[i])
-    remember(sights, controls, i, seen, first)
 
 
 @compiled

@@ -16,14 +16,19 @@
 | 35 … 34+2n | joint positions and velocities of the command; only with the action *joints* | limits |
 """
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.atacom.features import HORIZON, LINE, crossing
-from airhockey.learning.envs.actions import Controls
-from airhockey.learning.envs.compiling import allocating, compiled
+from airhockey.agents.compiling import compiled, in_place
+from airhockey.agents.estimation.kalman import filter_record
+from airhockey.agents.estimation.motion import puck_motion
+from airhockey.agents.estimation.watch import layout_of, look
+from airhockey.agents.learned.actions import Controls
+from airhockey.agents.table import BASE_X
 
 Array = NDArray[np.float64]
 Features = NDArray[np.float32]
@@ -62,17 +67,52 @@ class Sights(NamedTuple):
     constants: Array
 
 
+def new_sights(env_info: Mapping[str, Any], joints: bool, n_envs: int) -> Sights:
+    """Of n environments; `joints`: whether the joints are observed, too."""
+    layout = layout_of(env_info)
+    return Sights(
+        np.repeat(filter_record(float(env_info["dt"]), None, None, layout), n_envs),
+        np.zeros((n_envs, 6, 5)),
+        np.zeros((n_envs, 2, 2)),
+        len(env_info["opponent_ee_ids"]) > 0,
+        np.zeros((n_envs, STACK, 4)),
+        np.zeros((n_envs, 4)),
+        *np.zeros((2, n_envs, 2)),
+        joints,
+        puck_motion().constants,
+    )
+
+
 def width_of(joints: bool, n: int) -> int:
     """The number of features."""
     return _FIXED + 4 * STACK + (2 * n if joints else 0)
 
 
 def warm_up(sights: Sights) -> None:
-    """Compile what allocates, before what calls it."""
+    """Compile what allocates, before what calls it: or numba takes the caller's options for it."""
     _cross(sights.puck[0, 0], sights.constants, sights.crossing[0])
+    seen = np.zeros(int(sights.watches["end"][0]) if sights.opponent else int(sights.watches["puck"].max()) + 1)
+    look(seen, sights.tip[0], sights.watches[:1], sights.puck[0], sights.mallets[0])
 
 
-@compiled
+@in_place
+def see(sights: Sights, controls: Controls, i: int, observation: Array, first: bool) -> None:
+    """Take an observation into the filter and into the stack.
+
+    Args:
+        observation: Environment i's own. Shape (D,).
+        first: Whether it is an episode's first.
+    """
+    if first:
+        sights.watches[i].begun = False
+    seen, tip = sights.seen[i], sights.tip[i]
+    seen[0], seen[1] = observation[0] + BASE_X, observation[1]
+    tip[0], tip[1] = controls.tip[i, 0] - BASE_X, controls.tip[i, 1]
+    look(observation, tip, sights.watches[i : i + 1], sights.puck[i], sights.mallets[i])
+    remember(sights, controls, i, seen, first)
+
+
+@in_place
 def remember(sights: Sights, controls: Controls, i: int, seen: Array, first: bool) -> None:
     """Take the latest positions into the stack; at an episode's first observation they fill it.
 
@@ -92,7 +132,7 @@ def remember(sights: Sights, controls: Controls, i: int, seen: Array, first: boo
                 recent[k, j] = recent[0, j]
 
 
-@compiled
+@in_place
 def write(sights: Sights, controls: Controls, i: int, left: float, features: Features) -> None:
     """Write the features of environment i; see this module's docstring.
 
@@ -125,6 +165,6 @@ def write(sights: Sights, controls: Controls, i: int, left: float, features: Fea
         features[k] = min(max(features[k], np.float32(-LARGEST)), np.float32(LARGEST))
 
 
-@allocating
+@compiled
 def _cross(puck: Array, constants: Array, there: Array) -> None:
     there[:] = crossing(puck, LINE, HORIZON, constants)

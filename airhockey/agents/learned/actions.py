@@ -21,11 +21,11 @@ from airhockey.agents.atacom.controller import Model, integrate
 from airhockey.agents.atacom.following import gains_of
 from airhockey.agents.atacom.limits import limits_of
 from airhockey.agents.atacom.parameters import atacom_parameters
+from airhockey.agents.compiling import compiled, in_place
 from airhockey.agents.small_matrices import product
 from airhockey.agents.table import BASE_X
 from airhockey.envs.compiled import MAX_END_EFFECTOR_Y, MIN_END_EFFECTOR_X
 from airhockey.envs.specs import CONTROL_PERIOD, RobotSpec
-from airhockey.learning.envs.compiling import allocating, compiled
 
 Array = NDArray[np.float64]
 
@@ -81,13 +81,13 @@ def new_controls(kind: str, spec: RobotSpec, n_envs: int) -> Controls:
 
 
 def warm_up(controls: Controls) -> None:
-    """Compile what allocates, before what calls it."""
+    """Compile what allocates, before what calls it: or numba takes the caller's options for it."""
     q, velocity = controls.q[0], controls.velocity[0]
     _move(controls.model, controls.substeps, controls.wanted[0], q, velocity)
     _look(controls.model, q, velocity, controls.tip[0], controls.tip_velocity[0])
 
 
-@compiled
+@in_place
 def take_position(controls: Controls, i: int, q: Array) -> None:
     """Begin an episode: the command of arm i is where it stands, at rest. Shape (n,)."""
     for j in range(q.size):
@@ -95,7 +95,7 @@ def take_position(controls: Controls, i: int, q: Array) -> None:
     _look(controls.model, controls.q[i], controls.velocity[i], controls.tip[i], controls.tip_velocity[i])
 
 
-@compiled
+@in_place
 def command(controls: Controls, i: int, action: Array, order: Array) -> None:
     """Move the command of arm i on by a control step.
 
@@ -116,7 +116,7 @@ def command(controls: Controls, i: int, action: Array, order: Array) -> None:
     _look(controls.model, q, velocity, controls.tip[i], controls.tip_velocity[i])
 
 
-@compiled
+@in_place
 def _towards(controls: Controls, i: int, wanted: Array) -> None:
     """Replace a place by the tip's velocity on the way to it, which ends there at rest, in units of its largest. Shape (2,)."""
     x = controls.center[0] + controls.half[0] * wanted[0] - (controls.tip[i, 0] - BASE_X)
@@ -127,12 +127,12 @@ def _towards(controls: Controls, i: int, wanted: Array) -> None:
     wanted[0], wanted[1] = x * share, y * share
 
 
-@allocating
+@compiled
 def _move(model: Model, substeps: int, wanted: Array, q: Array, velocity: Array) -> None:
     q[:], velocity[:] = integrate(model, wanted, q, velocity, CONTROL_PERIOD, substeps)
 
 
-@allocating
+@compiled
 def _look(model: Model, q: Array, velocity: Array, tip: Array, tip_velocity: Array) -> None:
     values, rows = task_coordinates(model.chain, q)
     tip[0], tip[1] = values[0] + BASE_X, values[1]

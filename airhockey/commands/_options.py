@@ -100,6 +100,26 @@ python = click.option(
     metavar="PATH",
     help="Another interpreter for a submission's process: Python 3.8 to 3.14 with NumPy and what the agent needs.",
 )
+settings = click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="control.NAME=VALUE",
+    help="Change our players' controller, as in control.solver=osqp or control.kinematics=pinocchio.",
+)
+pythons = click.option(
+    "--python",
+    multiple=True,
+    metavar="[PLAYER:]PATH",
+    help="Another interpreter for the processes of all submissions, or of one player, as in home:PATH; in a tournament its name.",
+)
+player_settings = click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="[PLAYER:]control.NAME=VALUE",
+    help="Change the controller of our players, or of one, as in away:control.solver=osqp.",
+)
 out = click.option("--out", metavar="FOLDER", help="Run folder.  [default: a new one under runs/]")
 resume = click.option("--resume", is_flag=True, help="Continue the run in --out; its options need not be repeated.")
 as_json = click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object, and nothing else.")
@@ -131,7 +151,22 @@ ISOLATION = (isolate, patience)
 PLAY = (*ISOLATION, real_time)
 VIEWER = (host, port, no_browser, window)
 RUN = (out, resume, quiet)
-GAMES = (edition, game_steps, seed, agent_seed, jobs, cluster, disturbances, clock, variant, *PLAY, *RUN, as_json)
+GAMES = (
+    edition,
+    game_steps,
+    seed,
+    agent_seed,
+    jobs,
+    cluster,
+    disturbances,
+    clock,
+    variant,
+    *PLAY,
+    pythons,
+    player_settings,
+    *RUN,
+    as_json,
+)
 
 
 def options(*added: Option) -> Option:

@@ -205,16 +205,22 @@ def python_of(given: str | None) -> str | None:
     return None if given is None else interpreter(given).path
 
 
-def real_time_of(given: Mapping[str, Any], agents: Iterable[str], environment: str, edition: str) -> float:
-    """The pace asked for, or the one that the agents need; the user is told where it is theirs."""
+def real_time_of(given: Mapping[str, Any], agents: Mapping[str, str | None], environment: str, edition: str) -> float:
+    """The pace asked for, or the one that the agents need; the user is told where it is theirs.
+
+    Args:
+        given: The options.
+        agents: Who plays -> another interpreter for its process, or None.
+        environment, edition: Where.
+    """
     if given.get("real_time") is not None:
         return float(given["real_time"])
     if given.get("resume"):
         return 0.0  # the run keeps its own
     from airhockey.evaluator.pacing import pace_for
 
-    for agent in dict.fromkeys(agents):
-        if pace_for(agent, environment, given["isolate"], given["patience"], given.get("python"), edition):
+    for agent, python in agents.items():
+        if pace_for(agent, environment, given["isolate"], given["patience"], python, edition):
             click.echo(
                 f"hockey: {agent!r} thinks between its steps, in threads or processes: they are paced as on the robot "
                 "(--real-time 0 plays as fast as possible)",
@@ -224,9 +230,8 @@ def real_time_of(given: Mapping[str, Any], agents: Iterable[str], environment: s
     return 0.0
 
 
-def game_options_of(given: Mapping[str, Any], agents: Iterable[str] = ()) -> GameOptions:
-    """How games are played, from the options that are there and by what the agents need."""
-    agents = tuple(agents)
+def game_options_of(given: Mapping[str, Any], agents: Mapping[str, str | None]) -> GameOptions:
+    """How games are played, from the options that are there and by what the agents need; `agents` as in `real_time_of`."""
     edition = edition_of(given, agents)
     return GameOptions(
         steps=given["steps"],

@@ -33,13 +33,7 @@ if TYPE_CHECKING:
     metavar="NAME|FILE",
     help="Parameters of the rule-based player: tuned, thesis, or a YAML file, as `hockey train pgpe` leaves it.",
 )
-@click.option(
-    "--set",
-    "settings",
-    multiple=True,
-    metavar="control.NAME=VALUE",
-    help="Change our players' controller, as in control.solver=osqp or control.kinematics=pinocchio.",
-)
+@common.options(common.settings)
 @click.option("--episodes", type=click.IntRange(min=1), default=1000, show_default=True, help="Episodes of each task.")
 @common.options(common.seed, common.agent_seed, common.jobs, common.cluster, common.disturbances)
 @click.option(
@@ -109,6 +103,7 @@ def _options(given: dict[str, Any]) -> "Options":
 
     default = "planner" if given["parameters"] is None else "thesis"  # the one that reads them
     agent, order = agent_of(given["agent"] or default), given["interpolation_order"]
+    python = python_of(given["python"])
     edition = edition_of(given, (agent,), () if given["env"] is None else (given["env"],))
     environments = _environments(given, edition)
     return Options(
@@ -122,8 +117,8 @@ def _options(given: dict[str, Any]) -> "Options":
         clock=given["clock"],
         isolate=choose(agent, given["isolate"]).mode,
         patience=given["patience"],
-        real_time=real_time_of(given, (agent,), environments[0], edition),
-        python=python_of(given["python"]),
+        real_time=real_time_of(given, {agent: python}, environments[0], edition),
+        python=python,
         settings=given["settings"],
         agent_seed=agent_seed_of(given["agent_seed"], (agent,)),
         parameters=None if given["parameters"] is None else from_anywhere(given["parameters"]),

@@ -81,7 +81,7 @@ def _game(agents: list[str], given: dict[str, Any]) -> Any:
 
     if given["env"] is not None:
         raise ConfigurationError("two players play a game: leave out --env, or the second player")
-    options = game_options_of(given | {"real_time": 0.0}, agents)
+    options = game_options_of(given | {"real_time": 0.0}, dict.fromkeys(agents))
     check_game_options(options)
     for agent in agents:
         check_agent(agent, ("tournament",))

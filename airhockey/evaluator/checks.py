@@ -11,7 +11,7 @@ from airhockey.envs.disturbances import load_disturbances
 from airhockey.envs.editions import Edition, edition
 from airhockey.errors import ConfigurationError, unknown
 from airhockey.evaluator.isolation.handle import CLOCKS
-from airhockey.evaluator.isolation.modes import REMOTE, choose, host_and_port
+from airhockey.evaluator.isolation.modes import REMOTE, check_python, choose, host_and_port
 from airhockey.evaluator.runs.game_records import VARIANTS, GameOptions
 from airhockey.evaluator.runs.records import Options
 
@@ -41,7 +41,8 @@ def check_options(options: Options) -> None:
     load_disturbances(options.disturbances)
     check_agent(options.agent, options.environments)
     _check_parameters(options)
-    _check_settings(options)
+    check_settings(options.agent, options.settings)
+    check_python(options.agent, options.isolate, options.python)
     choose(options.agent, options.isolate)
     if options.patience <= 0.0:
         raise ConfigurationError(f"the patience must be positive, not {options.patience:g} s")
@@ -58,13 +59,11 @@ def _check_parameters(options: Options) -> None:
     thesis_parameters(options.parameters)
 
 
-def _check_settings(options: Options) -> None:
-    """Only our own players have this controller, and it must have these parameters."""
-    if options.settings and options.agent not in AGENTS:
-        raise ConfigurationError(
-            f"--set is for the players of airhockey ({', '.join(AGENTS)}), not for {options.agent!r}"
-        )
-    parsed(options.settings)
+def check_settings(agent: str, settings: tuple[str, ...]) -> None:
+    """Only our own players have this controller, and it must have these parameters; raises `ConfigurationError`."""
+    if settings and agent not in AGENTS:
+        raise ConfigurationError(f"--set is for the players of airhockey ({', '.join(AGENTS)}), not for {agent!r}")
+    parsed(settings)
 
 
 def check_agent_seed(secret: str | None) -> None:

@@ -8,9 +8,10 @@ import msgspec
 
 from airhockey.envs.editions import DEFAULT
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.checks import check_agent, check_game_options, check_seed
+from airhockey.evaluator.checks import check_agent, check_game_options, check_seed, check_settings
 from airhockey.evaluator.engines.engine import Engine, InProcess
 from airhockey.evaluator.engines.pool import JobFailed
+from airhockey.evaluator.isolation.modes import check_python
 from airhockey.evaluator.judging.games import tally
 from airhockey.evaluator.play.blame import worker_lost
 from airhockey.evaluator.play.game import Game, GamePlayer, live_file, lost
@@ -43,6 +44,8 @@ class MatchOptions(msgspec.Struct, frozen=True, kw_only=True):
         swap_sides: In every second game the away player plays on the left.
         game: How each is played.
         home_order, away_order: Interpolation orders.
+        python: Of home and away: another interpreter for a submission's process.
+        settings: Of home and away: of our own players' controllers.
     """
 
     home: str
@@ -53,6 +56,8 @@ class MatchOptions(msgspec.Struct, frozen=True, kw_only=True):
     game: GameOptions = GameOptions()
     home_order: Order = "agent"
     away_order: Order = "agent"
+    python: tuple[str | None, str | None] = (None, None)
+    settings: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
 
 
 class GameResult(msgspec.Struct, frozen=True, kw_only=True):
@@ -104,8 +109,10 @@ class MatchFolder(GameFolder[MatchOptions]):
         check_seed(options.seed)
         if options.games < 1:
             raise ConfigurationError(f"the number of games must be positive, not {options.games}")
-        for agent in (options.home, options.away):
+        for agent, python, settings in zip((options.home, options.away), options.python, options.settings, strict=True):
             check_agent(agent, ("tournament",))
+            check_python(agent, options.game.isolate, python)
+            check_settings(agent, settings)
 
 
 begin_match = MatchFolder.begin
@@ -116,11 +123,19 @@ def match_jobs(options: MatchOptions) -> list[GameJob]:
     """The games of a match."""
     jobs = []
     for index in range(options.games):
-        home = options.home, options.home_order
-        away = options.away, options.away_order
-        left, right = (away, home) if options.swap_sides and index % 2 else (home, away)
-        seed = game_seed(options.seed, str(index))
-        jobs.append(GameJob(str(index), left[0], right[0], left[0], right[0], seed, left[1], right[1]))
+        job = GameJob(
+            str(index),
+            options.home,
+            options.away,
+            options.home,
+            options.away,
+            game_seed(options.seed, str(index)),
+            options.home_order,
+            options.away_order,
+            *options.python,
+            *options.settings,
+        )
+        jobs.append(job.swapped() if options.swap_sides and index % 2 else job)
     return jobs
 
 

@@ -1,9 +1,9 @@
 """Attacks the product, and says what held.
 
     python scripts/attack                       everything; takes hours on one core
-    python scripts/attack --sample              some of each kind; minutes
+    python scripts/attack --sample              some of each kind; half a minute
     python scripts/attack --only escapes kills  these kinds
-    python scripts/attack --keep build/attack.json --table docs/security.md
+    python scripts/attack --keep build/attack --table docs/security.md
                                                 write the table there, with what other calls have kept of other kinds
 
 Runs on this machine, against this checkout only, in folders and sandboxes of its own. Exit status 1: something did not hold.
@@ -32,14 +32,12 @@ def main() -> int:
         "--name", metavar="PART", default="", help="only attacks whose name holds this, where a kind can be cut"
     )
     parser.add_argument("--verbose", action="store_true", help="say what held, too")
-    parser.add_argument("--keep", type=Path, metavar="FILE", help="add the counts to those in this file, kind by kind")
+    parser.add_argument("--keep", type=Path, metavar="FOLDER", help="keep the counts of each kind there")
     parser.add_argument("--table", type=Path, metavar="FILE", help="put the table into this page, where its mark is")
     given = parser.parse_args()
     product.adopt_orphans()
     product.WANTED = given.name
     kept: dict[str, Counts] = {}
-    if given.keep is not None and given.keep.exists():
-        kept = json.loads(given.keep.read_text())
     held_all = True
     for kind in given.only:
         began = time.monotonic()
@@ -51,9 +49,11 @@ def main() -> int:
                 print(f"{verdict.outcome:9} {verdict.kind}: {verdict.name}: {verdict.detail}", flush=True)
         kept[kind] = count(verdicts)
         if given.keep is not None:
-            given.keep.parent.mkdir(parents=True, exist_ok=True)
-            given.keep.write_text(json.dumps(kept, indent=1))
+            given.keep.mkdir(parents=True, exist_ok=True)
+            (given.keep / f"{kind}.json").write_text(json.dumps(kept[kind], indent=1))
         print(f"{kind}: {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
+    if given.keep is not None:
+        kept = {file.stem: json.loads(file.read_text()) for file in given.keep.glob("*.json")} | kept
     shown = table([kept[kind] for kind in KINDS if kind in kept])
     print(shown)
     if given.table is not None:

@@ -89,7 +89,7 @@ SERVERS = {
 
 def attack(sample: bool) -> Iterator[Verdict]:
     """Call every command in a folder full of planted modules."""
-    for name in ("match",) if sample else product.wanted(COMMANDS):
+    for name in ("package",) if sample else product.wanted(COMMANDS):
         with _planted() as (place, mark):
             for command in COMMANDS[name]:
                 done = place.hockey(*command)

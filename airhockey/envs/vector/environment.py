@@ -107,6 +107,7 @@ class VectorEnvironment:
         self._steps, self._game_steps = np.zeros(n, np.int64), np.zeros(n, np.int64)
         for i, env in enumerate(self._environments):
             env.move_into(self.fleet.memories[i : i + 1], self.fleet.referees[i : i + 1], self.fleet.left[i])
+        self._prepare()
         self.reset(np.random.SeedSequence().spawn(n) if seed is None else seed)
 
     @property
@@ -163,12 +164,7 @@ class VectorEnvironment:
         before = self.fleet.referees["score"].copy() if self.single.n_players == 2 else None
         self._simulate(batch.observations)
         self._read(batch)
-        if before is not None:
-            gained = self.fleet.referees["score"] - before
-            batch.rewards[:, 0] = gained[:, 0] - gained[:, 1]
-            batch.rewards[:, 1] = -batch.rewards[:, 0]
-        else:
-            np.logical_and(batch.success, batch.terminated | batch.truncated, out=batch.rewards, casting="unsafe")
+        self._reward(batch, before)
         self._go_on(batch)
         return batch
 
@@ -201,11 +197,31 @@ class VectorEnvironment:
             )
         self._slots[...] = given.reshape(self._slots.shape)
 
-    def _simulate(self, observations: Array) -> None:
+    def _prepare(self) -> None:
+        """Whatever else a kind of batch needs, before its first episode begins."""
+
+    def _run(self, observations: Any) -> None:
+        """Step all, and write what they see."""
         self._steps += 1
         self._game_steps += 1
-        self._counter[0] = 0
         self._threads.run(step_many, self.fleet, observations, self._counter)
+
+    def _reward(self, batch: Batch, score: Any) -> None:
+        """Write the rewards; `score` is that of the games before the step. Shape (N, 2)."""
+        if score is None:
+            np.logical_and(batch.success, batch.terminated | batch.truncated, out=batch.rewards, casting="unsafe")
+            return
+        gained = self.fleet.referees["score"] - score
+        batch.rewards[:, 0] = gained[:, 0] - gained[:, 1]
+        batch.rewards[:, 1] = -batch.rewards[:, 0]
+
+    def _first(self, i: int, observation: Array) -> Any:
+        """What is seen at the beginning of an episode."""
+        return observation
+
+    def _simulate(self, observations: Any) -> None:
+        self._counter[0] = 0
+        self._run(observations)
         if self.fleet.codes.any():
             first = int(np.flatnonzero(self.fleet.codes != DONE)[0])
             simulation, step = self._environments[first].simulation, int(self._steps[first])
@@ -237,10 +253,11 @@ class VectorEnvironment:
             if batch.truncated[i] or self.single.n_players == 1:
                 self._game_steps[i] = 0
 
-    def _begin(self, i: int, seed: Seed, observations: Array) -> None:
-        observations[i] = self._environments[i].reset(seed)
+    def _begin(self, i: int, seed: Seed, observations: Any) -> None:
+        observation = self._environments[i].reset(seed)
         self._keep(i)
         self._steps[i], self.fleet.verdicts[i] = 0, verdicts.GOING_ON
+        observations[i] = self._first(i, observation)
 
     def _keep(self, i: int) -> None:
         """After a reset: its streams are perhaps others, and its array of readings is a new one; have it write here again."""

@@ -32,6 +32,7 @@ from airhockey.evaluator.isolation.output import Output
 from airhockey.evaluator.isolation.pids import first_inside, only_child
 from airhockey.evaluator.isolation.process_tree import ProcessTree, descendants
 from airhockey.evaluator.isolation.restrict import Restrictions
+from airhockey.evaluator.isolation.sandbox import SCRATCH
 from airhockey.evaluator.isolation.shared_core import SharedCore
 from airhockey.inputs.names import shown
 
@@ -86,7 +87,8 @@ class IsolatedAgent(AgentHandle):
             self._memory.write_text(job | {"restrictions": restrictions.to_json(), "seed": _words(seed)})
             self._ask(channel.BUILD, limits.start)
             self.times.begin()
-            order = self._memory.read_text().get("interpolation_order", 3)
+            told = self._memory.read_text()
+            order = told.get("interpolation_order", 3) if isinstance(told, dict) else 3
             self.interpolation_order = order if order is None or isinstance(order, int) else 3
         except BaseException:
             self.close()
@@ -225,13 +227,19 @@ class IsolatedAgent(AgentHandle):
         self._core = SharedCore(self._pid)
         self._group = self._new_group()
         self._isolation = protection(self._launch.sandbox, () if self._group is None else self._group.limited)
-        self._watched = Watched(ProcessTree(self._pid, self._first), self._limits.memory, self._limits.processes)
+        self._watched = Watched(
+            ProcessTree(self._pid, self._first), self._limits.memory, self._limits.processes, self._scratch()
+        )
         self.times = AnswerTimes(self._watched, self._limits)
         for pid in (self._pid, self._first or self._pid):
             # From outside, by one who may: then nobody inside can lower it again.
             with contextlib.suppress(OSError), open(f"/proc/{pid}/oom_score_adj", "w") as score:
                 score.write("1000")
         memory_watch.watch(self._watched)
+
+    def _scratch(self) -> list[str]:
+        """Where the folders in memory of a sandbox are found from here."""
+        return [] if self._first is None else [f"/proc/{self._pid}/root{place}" for place in (SCRATCH, "/dev/shm")]
 
     def _new_group(self) -> Group | None:
         """The cgroup of all its processes; None where the machine lets us have none."""

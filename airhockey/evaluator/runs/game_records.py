@@ -58,6 +58,9 @@ class GameJob(msgspec.Struct, frozen=True):
         home, away: Names of the players.
         home_agent, away_agent: What they are: a name of the registry or the absolute path of a submission.
         seed: Of the game.
+        home_order, away_order: Interpolation orders.
+        home_python, away_python: Other interpreters for submissions' processes, see `records.Options.python`.
+        home_settings, away_settings: Of our own players' controllers, see `records.Options.settings`.
     """
 
     key: str
@@ -68,6 +71,16 @@ class GameJob(msgspec.Struct, frozen=True):
     seed: int
     home_order: Order = "agent"
     away_order: Order = "agent"
+    home_python: str | None = None
+    away_python: str | None = None
+    home_settings: tuple[str, ...] = ()
+    away_settings: tuple[str, ...] = ()
+
+    def swapped(self) -> "GameJob":
+        """The same game with the players on each other's side."""
+        sides = [(f"home{what}", f"away{what}") for what in ("", "_agent", "_order", "_python", "_settings")]
+        there = {one: getattr(self, other) for home, away in sides for one, other in ((home, away), (away, home))}
+        return msgspec.structs.replace(self, **there)
 
 
 class Status(msgspec.Struct, frozen=True, kw_only=True):

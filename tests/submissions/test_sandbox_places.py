@@ -1,0 +1,95 @@
+"""Where software lies, and what a machine can have: a sandbox is there in full, or its lack is said."""
+
+import os
+import subprocess
+import tempfile
+import venv
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+import airhockey
+from airhockey.envs.disturbances import load_disturbances
+from airhockey.errors import ConfigurationError
+from airhockey.evaluator import Options
+from airhockey.evaluator.isolation import modes
+from airhockey.evaluator.play.episode import EpisodePlayer
+from airhockey.evaluator.play.game import GamePlayer
+from airhockey.evaluator.runs.game_records import GameJob, GameOptions
+from airhockey.evaluator.runs.records import Job
+
+LOOK = """
+import subprocess, sys
+from airhockey.evaluator.isolation import sandbox
+print(sandbox.why_no_sandbox())
+inside = [*sandbox.walls(1 << 20), *sandbox.closing(), sys.executable, "-P", "-c", "import only_here; print(only_here.WORD)"]
+print(subprocess.run(inside, capture_output=True, text=True, cwd="/", env=sandbox.software_environment()).stdout)
+"""
+
+
+@pytest.fixture
+def python() -> Iterator[str]:
+    """The interpreter of a virtual environment below /tmp, which the sandbox has a folder of its own for."""
+    with tempfile.TemporaryDirectory(dir="/tmp", prefix="airhockey-venv-") as folder:
+        os.chmod(folder, 0o755)
+        venv.create(folder, symlinks=True, with_pip=False)
+        packages = next(Path(folder).glob("lib/python*/site-packages"))
+        (packages / "only_here.py").write_text("WORD = 'found'\n")
+        yield str(Path(folder) / "bin" / "python")
+
+
+def test_a_virtual_environment_below_tmp_has_a_sandbox(python: str, sandbox: None) -> None:
+    package = Path(next(iter(airhockey.__path__))).parent
+    environment = {**os.environ, "PYTHONPATH": str(package)}
+    done = subprocess.run([python, "-P", "-c", LOOK], capture_output=True, text=True, env=environment, timeout=120)
+    assert done.stdout.split() == ["None", "found"], done.stderr
+
+
+def test_a_sandbox_that_is_not_to_be_had_is_the_machines_fault(
+    submission: Callable[..., str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A worker elsewhere may lack what the machine that began the run has: no episode is lost to the agent by that."""
+    monkeypatch.setattr(modes, "why_no_sandbox", lambda: "no bubblewrap")
+    agent, ideal = submission(), load_disturbances("ideal")
+    player = EpisodePlayer(Options(environments=("3dof-defend",), agent=agent, isolate="sandbox"), ideal)
+    with pytest.raises(ConfigurationError, match="no bubblewrap"):
+        player(Job("3dof-defend", 0))
+    job = GameJob("0", "home", "away", "hold", agent, seed=1)
+    with pytest.raises(ConfigurationError, match="no bubblewrap"):
+        GamePlayer(GameOptions(steps=5, isolate="sandbox"), ideal)(job)
+
+
+def test_the_record_says_what_the_default_got(
+    submission: Callable[..., str], sandbox: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job = GameJob("0", "home", "away", "hold", submission(), seed=1)
+    player = GamePlayer(GameOptions(steps=5, isolate="auto"), load_disturbances("ideal"))
+    record = player(job).record
+    assert record.home.process.isolation == "none"
+    assert record.away.process.isolation.startswith("sandbox (bubblewrap, seccomp, ")
+    assert record.away.process.build_time > record.away.process.start_time > 0.0
+    monkeypatch.setattr(modes, "why_no_sandbox", lambda: "no bubblewrap")
+    assert player(job).record.away.process.isolation.startswith("process (")
+
+
+def test_an_agent_that_cannot_be_built_is_on_record_with_its_place(bad: Callable[..., str]) -> None:
+    agent = bad(importing="raise ValueError('no')")
+    player = EpisodePlayer(
+        Options(environments=("3dof-defend",), agent=agent, isolate="process"), load_disturbances("ideal")
+    )
+    record = player(Job("3dof-defend", 0)).record
+    assert record.error is not None and record.process.isolation == "process"
+    assert record.process.build_time > 0.0
+
+
+def test_an_agent_that_wastes_hours_by_breaking_down_is_not_built_again(bad: Callable[..., str]) -> None:
+    """Its episodes are failed, and an episode's time is given back with each of them."""
+    options = Options(environments=("3dof-defend",), agent=bad("os._exit(1)"), isolate="process")
+    player = EpisodePlayer(options, load_disturbances("ideal"))
+    assert "exit status 1" in str(player(Job("3dof-defend", 0)).record.error)
+    player._rebuilding.spent = player._rebuilding.allowed + 15.0
+    errors = [str(player(Job("3dof-defend", index)).record.error) for index in range(1, 4)]
+    player.close()
+    assert ["broke down too often" in error for error in errors] == [True, True, False]
+    assert "exit status 1" in errors[2]

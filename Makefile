@@ -29,6 +29,7 @@ layers: .venv/dev.installed
 
 docs: .venv/dev.installed
 	$(BIN)/python scripts/command_reference.py docs/commands.md
+	$(BIN)/python scripts/rules_pages.py docs/rules
 	$(BIN)/zensical build --strict --clean
 
 players: .venv/dev.installed

@@ -50,7 +50,10 @@ def main() -> int:
         kept[kind] = count(verdicts)
         if given.keep is not None:
             given.keep.mkdir(parents=True, exist_ok=True)
-            (given.keep / f"{kind}.json").write_text(json.dumps(kept[kind], indent=1))
+            file = given.keep / f"{kind}.json"
+            if given.name and file.exists():  # rows of other attacks stay
+                kept[kind] = json.loads(file.read_text()) | kept[kind]
+            file.write_text(json.dumps(kept[kind], indent=1))
         print(f"{kind}: {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
     if given.keep is not None:
         kept = {file.stem: json.loads(file.read_text()) for file in given.keep.glob("*.json")} | kept

@@ -1,6 +1,7 @@
 """Where software lies, and what a machine can have: a sandbox is there in full, or its lack is said."""
 
 import os
+import py_compile
 import subprocess
 import tempfile
 import venv
@@ -10,14 +11,17 @@ from pathlib import Path
 import pytest
 
 import airhockey
+from airhockey import envs
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options
 from airhockey.evaluator.isolation import modes
+from airhockey.evaluator.isolation.build import build_agent
 from airhockey.evaluator.play.episode import EpisodePlayer
 from airhockey.evaluator.play.game import GamePlayer
 from airhockey.evaluator.runs.game_records import GameJob, GameOptions
 from airhockey.evaluator.runs.records import Job
+from submissions import make_submission
 
 LOOK = """
 import subprocess, sys
@@ -93,3 +97,17 @@ def test_an_agent_that_wastes_hours_by_breaking_down_is_not_built_again(bad: Cal
     player.close()
     assert ["broke down too often" in error for error in errors] == [True, True, False]
     assert "exit status 1" in errors[2]
+
+
+def test_compiled_code_that_is_other_than_its_source_is_not_seen(tmp_path: Path, sandbox: None) -> None:
+    """Python believes a compiled module that says so; no hash of an entry counts what tools leave in its folder."""
+    entry = Path(make_submission(tmp_path, config="interpolation_order: 3\n"))
+    source = entry / "agent_builder.py"
+    honest = source.read_text()
+    source.write_text("raise ValueError('another')\n")
+    compiled = py_compile.compile(str(source), invalidation_mode=py_compile.PycInvalidationMode.UNCHECKED_HASH)
+    source.write_text(honest)
+    assert compiled is not None and Path(compiled).parent.name == "__pycache__"
+    env = envs.make("3dof-defend")
+    agent = build_agent(str(entry), env, mode="sandbox")
+    agent.close()

@@ -9,7 +9,7 @@ BIN := .venv/bin
 TASK ?= prepare
 EPISODES ?= 1000
 
-.PHONY: compatibility evaluate test lint types layers docs pytest clean
+.PHONY: compatibility evaluate test lint types layers docs players pytest clean
 
 evaluate: .venv/core.installed
 	$(BIN)/hockey evaluate --task $(TASK) --episodes $(EPISODES)
@@ -30,7 +30,10 @@ docs: .venv/dev.installed
 	$(BIN)/python scripts/command_reference.py docs/commands.md
 	$(BIN)/zensical build --strict --clean
 
-pytest: .venv/dev.installed
+players: .venv/dev.installed
+	$(BIN)/python scripts/compile_players.py
+
+pytest: .venv/dev.installed players
 	$(BIN)/pytest --numprocesses auto
 
 compatibility: .venv/dev.installed

@@ -9,6 +9,7 @@ from typing import Any
 import msgspec
 
 from airhockey.agents.registry import EVERY_ENVIRONMENT
+from airhockey.envs.editions import edition
 from airhockey.errors import ConfigurationError, unknown
 from airhockey.inputs import plain_yaml
 from airhockey.inputs.names import shown
@@ -28,6 +29,7 @@ class Metadata(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
         packages: Requirements as pip writes them, beyond airhockey itself.
         interpolation_order: 1, 2, 3, 4, 5, -1, or "none" for whole trajectories.
         tasks: Names of the environments that it plays.
+        edition: The year whose rules it was written for, where its tasks do not say so.
     """
 
     name: str
@@ -36,6 +38,7 @@ class Metadata(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     packages: tuple[str, ...] = ()
     interpolation_order: int | str | None = 3
     tasks: tuple[str, ...]
+    edition: str | None = None
 
     def check(self) -> None:
         """Find values that have no meaning; raises `ConfigurationError`."""
@@ -48,6 +51,8 @@ class Metadata(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
                 raise unknown(f"task in {METADATA}", task, EVERY_ENVIRONMENT)
         if not self.tasks:
             raise ConfigurationError(f"{METADATA}: tasks is empty; name some of {', '.join(EVERY_ENVIRONMENT)}")
+        if self.edition is not None:
+            edition(self.edition)
         for requirement in self.packages:
             if not _REQUIREMENT.fullmatch(requirement):
                 raise ConfigurationError(

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.errors import ActionError
+from airhockey.errors import ActionError, EnvironmentFault
 from airhockey.evaluator.isolation import channel, memory_watch
 from airhockey.evaluator.isolation.answer_times import AnswerTimes
 from airhockey.evaluator.isolation.cgroup import Group, new_group
@@ -220,7 +220,9 @@ class IsolatedAgent(AgentHandle):
     def _await_start(self) -> None:
         """Wait for the process to run. Nothing of the agent is loaded yet, so its process is the only one in the sandbox."""
         if self._receive(self._limits.start) != channel.HELLO:
-            raise self._exit_error()
+            raise EnvironmentFault(
+                f"an agent's process does not start: {self._exit_error()}"
+            )  # nothing of it was loaded
         self._pid = self._process.pid if self._first is None else only_child(self._first)
         self._core = SharedCore(self._pid)
         self._group = self._new_group()

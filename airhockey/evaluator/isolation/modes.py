@@ -87,6 +87,15 @@ def protection(sandbox: bool, by_cgroup: Collection[str]) -> str:
     return f"{said}; not limited: {', '.join(missing)}" if missing else said
 
 
+def check_python(agent: str, isolate: str, python: str | None) -> None:
+    """Only a submission in a process of its own can have another interpreter; raises `ConfigurationError`."""
+    if python is not None and (agent.startswith(REMOTE) or not is_submission(agent) or isolate == "none"):
+        raise ConfigurationError(
+            f"--python is for submissions in a process of their own; {agent!r} runs with the evaluator "
+            "(--isolate process or sandbox for a submission)"
+        )
+
+
 def host_and_port(address: str) -> tuple[str, int]:
     """What tcp://HOST:PORT names; raises `ConfigurationError`."""
     host, _, port = address.removeprefix(REMOTE).rstrip("/").rpartition(":")

@@ -48,6 +48,7 @@ def play(job: Job, rollout: Rollout, recorder: Recorder) -> Episode:
         computation_time=StepTime(mean=float(times.mean()), max=float(times.max())) if times.size else StepTime(),
         process=seat.process,
         error=seat.failure,
+        edition=rollout.env.edition.edition,
     )
     return Episode(record, trajectory)
 
@@ -113,7 +114,7 @@ class EpisodePlayer:
         rollout = self.open(job)
         (seat,) = rollout.seats
         if seat.failure is not None:
-            return failed(job, seat.failure, seat.process)
+            return failed(job, seat.failure, self.options.edition, seat.process)
         assert self._task is not None
         return play(job, rollout, self._task.recorder)
 
@@ -167,7 +168,7 @@ class EpisodePlayer:
         return _Task(name, env, seats, Recorder(env, env.reset(seed=0).size, self.profile.blurs_observations))
 
 
-def failed(job: Job, reason: str, process: AgentProcess | None = None) -> Episode:
+def failed(job: Job, reason: str, edition: str, process: AgentProcess | None = None) -> Episode:
     """An episode that the agent failed before its first step."""
     where = AgentProcess() if process is None else process
-    return Episode(EpisodeRecord(env=job.env, index=job.index, process=where, error=reason), {})
+    return Episode(EpisodeRecord(env=job.env, index=job.index, process=where, error=reason, edition=edition), {})

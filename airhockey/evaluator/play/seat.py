@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from airhockey.evaluator.isolation.failures import agent_failures, describe
 from airhockey.evaluator.isolation.handle import AgentHandle
+from airhockey.evaluator.play.blame import fault_of_machine
 from airhockey.evaluator.play.watchdog import Watch
 from airhockey.evaluator.runs.game_records import HOME, Side
 from airhockey.evaluator.runs.records import AgentProcess
@@ -94,7 +95,7 @@ class Seat:
             self.agent.seed(sequence)
 
     def start(self) -> None:
-        """A serve begins; an agent that failed before does not hear of it."""
+        """A serve begins; an agent that failed before does not hear of it. Raises `EnvironmentFault`, as `act` does."""
         if self.agent is None or self.failure is not None:
             return
         began = time.perf_counter()
@@ -104,12 +105,16 @@ class Seat:
                 self._preprocessors = tuple(self.agent.preprocessors)
             self._act, self._timely = self.agent.act, None
         except agent_failures() as failure:
-            self.fail(failure, 0)
+            self._fail(failure, 0)
         finally:
             self.start_time = max(self.start_time, time.perf_counter() - began)
 
     def act(self, observation: Array, step: int) -> None:
-        """Ask for the command of a control step, from 1; it is then in `action`, or the seat has failed."""
+        """Ask for the command of a control step, from 1; it is then in `action`, or the seat has failed.
+
+        Raises:
+            EnvironmentFault: The machine failed, and not the agent.
+        """
         if self.failure is not None:
             return
         try:
@@ -126,7 +131,7 @@ class Seat:
             action = self.form.check(action, step)
         except agent_failures() as failure:
             self.late = False
-            self.fail(failure, step)
+            self._fail(failure, step)
             return
         self.late = self.seconds > self._time_limit
         if self.late:
@@ -144,6 +149,13 @@ class Seat:
     def fail(self, failure: BaseException, step: int) -> None:
         """It failed in a control step, from 1; 0 in `episode_start`."""
         self.error, self.failure = failure, self._care.reason(failure, step)
+
+    def _fail(self, failure: BaseException, step: int) -> None:
+        """Its code raised: it failed, or the machine did under one of our own players."""
+        fault = None if self.agent is None else fault_of_machine(failure, self.agent)
+        if fault is not None:
+            raise fault from failure
+        self.fail(failure, step)
 
     def stop(self) -> None:
         """Tell the agent that it is over; one that has failed is ended without a word."""

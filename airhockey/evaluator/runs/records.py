@@ -7,6 +7,8 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.editions import DEFAULT, available, edition
+
 Trajectory = dict[str, NDArray[np.float64]]
 """One episode's arrays by name; `airhockey.evaluator.play.episode.Recorder.trajectory` says which."""
 
@@ -25,7 +27,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
         disturbances: Name of a profile or absolute path of a YAML file.
         interpolation_order: See `Order`.
         clock: What the time of `draw_action` is measured with.
-        edition: Rule edition.
+        edition: The year whose rules apply.
         isolate: Where the agent lives: with the evaluator, in a process of its own, or in a sandbox.
         patience: Longest time for an answer of an agent that lives elsewhere, in [s].
         real_time: Pace of the steps relative to the robot's, for agents that think beside them; 0: as fast as possible.
@@ -43,7 +45,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     disturbances: str = "ideal"
     interpolation_order: Order = "agent"
     clock: Literal["wall", "cpu"] = "cpu"
-    edition: str = "2023"
+    edition: str = DEFAULT
     isolate: Literal["none", "process", "sandbox"] = "none"
     patience: float = 60.0
     real_time: float = 0.0
@@ -51,6 +53,13 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     settings: tuple[str, ...] = ()
     parameters: str | None = None
     agent_seed: str | None = None
+
+    def __post_init__(self) -> None:
+        """Environments go by the names of their edition, whichever they were given by; checks complain about others."""
+        if self.edition in available():
+            names = edition(self.edition).names
+            environments = tuple(names.get(name, name) for name in self.environments)
+            msgspec.structs.force_setattr(self, "environments", environments)
 
 
 class Job(msgspec.Struct, frozen=True):
@@ -100,6 +109,7 @@ class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
         computation_time: Of `draw_action`.
         process: Where the agent lived.
         error: Why the agent failed the episode; None where it did not.
+        edition: The year whose rules applied.
     """
 
     env: str
@@ -111,6 +121,7 @@ class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
     computation_time: StepTime = StepTime()
     process: AgentProcess = AgentProcess()
     error: str | None = None
+    edition: str = DEFAULT
 
     @property
     def job(self) -> Job:
@@ -131,11 +142,16 @@ class Episode(msgspec.Struct, frozen=True):
 
 
 class RunTime(msgspec.Struct, frozen=True, kw_only=True):
-    """Time that `draw_action` took over a whole task, in [s]."""
+    """Time that `draw_action` took over a whole task, in [s].
+
+    Attributes:
+        late: Steps in which it took longer than a control step lasts.
+    """
 
     mean: float
     p99: float
     max: float
+    late: int = 0
 
 
 class PreparationTime(msgspec.Struct, frozen=True, kw_only=True):
@@ -153,6 +169,8 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
         penalty: Penalty points, summed over the episodes.
         violations: Constraint name -> number of episodes that violated it.
         agent_errors: Number of episodes that the agent failed.
+        inputs: See `Manifest`.
+        edition: The year whose rules applied.
         isolation: How far the agent was kept apart, see `AgentProcess`; all of them where machines differ.
     """
 
@@ -167,6 +185,8 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
     violations: dict[str, int]
     computation_time: RunTime
     agent_errors: int
+    inputs: dict[str, str] = {}
+    edition: str = DEFAULT
     isolation: str = ""
     preparation_time: PreparationTime = PreparationTime()
 
@@ -181,14 +201,16 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
 
     Attributes:
         deployability: The worst task's class.
-        phase: "phase-1" (3dof) or "phase-2" (7dof); None unless every task of it was played.
+        phase: "phase-1" (3dof) or "phase-2" (7dof), in the edition of 2025 "qualifying"; None unless all its tasks were played.
         score: Weighted success of the phase's tasks, 0 … 1.
+        edition: The year whose rules applied.
     """
 
     results: tuple[TaskResult, ...]
     deployability: str
     phase: str | None
     score: float | None
+    edition: str = DEFAULT
 
     @property
     def tasks(self) -> tuple[TaskResult, ...]:

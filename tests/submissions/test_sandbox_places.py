@@ -4,6 +4,7 @@ import os
 import py_compile
 import subprocess
 import tempfile
+import time
 import venv
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -15,8 +16,9 @@ from airhockey import envs
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options
-from airhockey.evaluator.isolation import modes
+from airhockey.evaluator.isolation import agent_client, modes
 from airhockey.evaluator.isolation.build import build_agent
+from airhockey.evaluator.isolation.failures import AgentDied
 from airhockey.evaluator.play.episode import EpisodePlayer
 from airhockey.evaluator.play.game import GamePlayer
 from airhockey.evaluator.runs.game_records import GameJob, GameOptions
@@ -111,3 +113,48 @@ def test_compiled_code_that_is_other_than_its_source_is_not_seen(tmp_path: Path,
     env = envs.make("3dof-defend")
     agent = build_agent(str(entry), env, mode="sandbox")
     agent.close()
+
+
+def test_empty_files_without_end_are_counted(bad: Callable[..., str], sandbox: None) -> None:
+    """They take no space where files lie, but the kernel's memory."""
+    making = "for k in range(10**6): os.close(os.open(f'/tmp/{k}', os.O_CREAT))"
+    env = envs.make("3dof-defend")
+    agent = build_agent(bad(making), env, mode="sandbox")
+    agent.episode_start()
+    observation = env.reset(seed=0)
+    for _ in range(2):
+        agent.act(observation)
+    with pytest.raises(AgentDied, match="more than 20,000 files"):
+        agent.act(observation)
+
+
+DAEMON = """
+if os.fork() == 0:
+    os.setsid()
+    if os.fork() == 0:
+        open(PLACE, 'w').write(str(os.getpid()))
+        time.sleep(600)
+    os._exit(0)
+os.wait()
+while not (os.path.exists(PLACE) and open(PLACE).read()): time.sleep(0.01)
+"""
+
+
+def test_nobody_is_left_behind_by_a_process_without_cgroup(
+    bad: Callable[..., str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whom its children leave behind becomes the agent's own child, and ends with it."""
+    monkeypatch.setattr(agent_client, "new_group", lambda limits: None)
+    place = tmp_path / "daemon"
+    env = envs.make("3dof-defend")
+    agent = build_agent(bad(DAEMON.replace("PLACE", repr(str(place))).strip()), env, mode="process")
+    agent.episode_start()
+    for _ in range(3):
+        agent.act(env.reset(seed=0))
+    daemon = Path(f"/proc/{place.read_text()}")
+    assert daemon.exists() and "rlimits" in agent.isolation
+    agent.close()
+    end = time.monotonic() + 10.0
+    while daemon.exists() and ") Z " not in (daemon / "stat").read_text() and time.monotonic() < end:
+        time.sleep(0.01)
+    assert not daemon.exists() or ") Z " in (daemon / "stat").read_text()

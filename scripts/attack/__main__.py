@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 
 import product
-from verdicts import BAD, HELD, Counts, count, table
+from verdicts import BAD, HELD, Outcomes, outcomes, table
 
 KINDS = ("escapes", "cheats", "hijacks", "entries", "fuzz", "kills")
 BEGIN, END = "<!-- the table of scripts/attack -->\n", "<!-- end of the table -->\n"
@@ -32,12 +32,12 @@ def main() -> int:
         "--name", metavar="PART", default="", help="only attacks whose name holds this, where a kind can be cut"
     )
     parser.add_argument("--verbose", action="store_true", help="say what held, too")
-    parser.add_argument("--keep", type=Path, metavar="FOLDER", help="keep the counts of each kind there")
+    parser.add_argument("--keep", type=Path, metavar="FOLDER", help="keep there what every attack ended in")
     parser.add_argument("--table", type=Path, metavar="FILE", help="put the table into this page, where its mark is")
     given = parser.parse_args()
     product.adopt_orphans()
     product.WANTED = given.name
-    kept: dict[str, Counts] = {}
+    kept: dict[str, Outcomes] = {}
     held_all = True
     for kind in given.only:
         began = time.monotonic()
@@ -47,10 +47,12 @@ def main() -> int:
             held_all = held_all and verdict.outcome not in BAD
             if given.verbose or verdict.outcome != HELD:
                 print(f"{verdict.outcome:9} {verdict.kind}: {verdict.name}: {verdict.detail}", flush=True)
-        kept[kind] = count(verdicts)
-        if given.keep is not None:
-            given.keep.mkdir(parents=True, exist_ok=True)
-            (given.keep / f"{kind}.json").write_text(json.dumps(kept[kind], indent=1))
+        file = None if given.keep is None else given.keep / f"{kind}.json"
+        again = given.name and file is not None and file.exists()  # then those of other names stay as they are
+        kept[kind] = outcomes(verdicts, json.loads(file.read_text()) if again and file is not None else {})
+        if file is not None:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(json.dumps(kept[kind], indent=1))
         print(f"{kind}: {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
     if given.keep is not None:
         kept = {file.stem: json.loads(file.read_text()) for file in given.keep.glob("*.json")} | kept

@@ -93,7 +93,8 @@ def attack(sample: bool) -> Iterator[Verdict]:
         with _planted() as (place, mark):
             for command in COMMANDS[name]:
                 done = place.hockey(*command)
-                yield trouble(KIND, name, done) or _judged(" ".join(command[:2]), mark, product.last_line(done))
+                called = " ".join(command)
+                yield trouble(KIND, called, done) or _judged(called, mark, product.last_line(done))
     for name in () if sample else product.wanted(SERVERS):
         with _planted() as (place, mark):
             place.hockey(*MATCH, "game")

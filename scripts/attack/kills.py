@@ -14,7 +14,7 @@ import product
 from verdicts import CHANGED, HANG, HELD, LEFTOVER, TRACEBACK, Verdict
 
 KILLS, SAMPLE = 100, 1
-TIMES = ("time", "seconds", "created", "longest", "mean", "p99", "rate", "duration", "cpu", "agent_seed", "memory")
+TIMES = ("time", "second", "created", "longest", "mean", "p99", "rate", "duration", "cpu", "agent_seed", "memory")
 """Parts of names of values that measure this machine, or say when it was."""
 RUNS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "evaluate": (

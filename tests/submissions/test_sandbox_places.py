@@ -1,8 +1,10 @@
 """Where software lies, and what a machine can have: a sandbox is there in full, or its lack is said."""
 
 import os
+import py_compile
 import subprocess
 import tempfile
+import time
 import venv
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -10,14 +12,18 @@ from pathlib import Path
 import pytest
 
 import airhockey
+from airhockey import envs
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options
-from airhockey.evaluator.isolation import modes
+from airhockey.evaluator.isolation import agent_client, modes
+from airhockey.evaluator.isolation.build import build_agent
+from airhockey.evaluator.isolation.failures import AgentDied
 from airhockey.evaluator.play.episode import EpisodePlayer
 from airhockey.evaluator.play.game import GamePlayer
 from airhockey.evaluator.runs.game_records import GameJob, GameOptions
 from airhockey.evaluator.runs.records import Job
+from submissions import make_submission
 
 LOOK = """
 import subprocess, sys
@@ -93,3 +99,62 @@ def test_an_agent_that_wastes_hours_by_breaking_down_is_not_built_again(bad: Cal
     player.close()
     assert ["broke down too often" in error for error in errors] == [True, True, False]
     assert "exit status 1" in errors[2]
+
+
+def test_compiled_code_that_is_other_than_its_source_is_not_seen(tmp_path: Path, sandbox: None) -> None:
+    """Python believes a compiled module that says so; no hash of an entry counts what tools leave in its folder."""
+    entry = Path(make_submission(tmp_path, config="interpolation_order: 3\n"))
+    source = entry / "agent_builder.py"
+    honest = source.read_text()
+    source.write_text("raise ValueError('another')\n")
+    compiled = py_compile.compile(str(source), invalidation_mode=py_compile.PycInvalidationMode.UNCHECKED_HASH)
+    source.write_text(honest)
+    assert compiled is not None and Path(compiled).parent.name == "__pycache__"
+    env = envs.make("3dof-defend")
+    agent = build_agent(str(entry), env, mode="sandbox")
+    agent.close()
+
+
+def test_empty_files_without_end_are_counted(bad: Callable[..., str], sandbox: None) -> None:
+    """They take no space where files lie, but the kernel's memory."""
+    making = "for k in range(10**6): os.close(os.open(f'/tmp/{k}', os.O_CREAT))"
+    env = envs.make("3dof-defend")
+    agent = build_agent(bad(making), env, mode="sandbox")
+    agent.episode_start()
+    observation = env.reset(seed=0)
+    for _ in range(2):
+        agent.act(observation)
+    with pytest.raises(AgentDied, match="more than 20,000 files"):
+        agent.act(observation)
+
+
+DAEMON = """
+if os.fork() == 0:
+    os.setsid()
+    if os.fork() == 0:
+        open(PLACE, 'w').write(str(os.getpid()))
+        time.sleep(600)
+    os._exit(0)
+os.wait()
+while not (os.path.exists(PLACE) and open(PLACE).read()): time.sleep(0.01)
+"""
+
+
+def test_nobody_is_left_behind_by_a_process_without_cgroup(
+    bad: Callable[..., str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whom its children leave behind becomes the agent's own child, and ends with it."""
+    monkeypatch.setattr(agent_client, "new_group", lambda limits: None)
+    place = tmp_path / "daemon"
+    env = envs.make("3dof-defend")
+    agent = build_agent(bad(DAEMON.replace("PLACE", repr(str(place))).strip()), env, mode="process")
+    agent.episode_start()
+    for _ in range(3):
+        agent.act(env.reset(seed=0))
+    daemon = Path(f"/proc/{place.read_text()}")
+    assert daemon.exists() and "rlimits" in agent.isolation
+    agent.close()
+    end = time.monotonic() + 10.0
+    while daemon.exists() and ") Z " not in (daemon / "stat").read_text() and time.monotonic() < end:
+        time.sleep(0.01)
+    assert not daemon.exists() or ") Z " in (daemon / "stat").read_text()

@@ -283,16 +283,17 @@ class IsolatedAgent(AgentHandle):
 
     def _receive(self, patience: float) -> bytes:
         """The agent's reply; empty where its process has ended."""
-        deadline = time.monotonic() + patience
+        deadline, left = time.monotonic() + patience, patience
         while True:
-            ready = dict(self._poll.poll(max(deadline - time.monotonic(), 0.0) * 1e3))
-            if self._replies in ready:
+            ready = self._poll.poll(left * 1e3)
+            if ready and ready[0][0] == self._replies:  # registered first, so named first
                 break
             if time.monotonic() >= deadline:
                 self.close()
                 raise AgentTimeout(f"it did not answer within {patience:g} s and was stopped")
             if not self._output.drain():
                 self._poll.unregister(self._output.descriptor)
+            left = max(deadline - time.monotonic(), 0.0)
         return os.read(self._replies, channel.MESSAGE + 1)  # one more, so that what is too much shows
 
     def _exit_error(self) -> AgentDied:

@@ -44,12 +44,10 @@ class Group:
 
     def ran_out_of_memory(self) -> bool:
         """Whether the kernel had to end a process because the limit was reached."""
-        folder = self.folders.get("memory")
-        for name in ("memory.events", "memory.oom_control"):
-            with contextlib.suppress(OSError, AttributeError):
-                counts = dict(line.split() for line in (folder / name).read_text().splitlines())  # type: ignore[operator]
-                return counts.get("oom_kill", "0") != "0"
-        return False
+        if "memory" not in self.folders:
+            return False
+        lines = [_words(self.folders["memory"] / name) for name in ("memory.events", "memory.oom_control")]
+        return any(name == "oom_kill" and count != "0" for words in lines for name, count in itertools.pairwise(words))
 
     def remove(self) -> None:
         """End every process in it, and the group itself; what still dies is left to `_remove_stale`."""
@@ -118,8 +116,8 @@ def _parents() -> dict[str, list[Path]]:
         for controller, resource in (("memory", "memory"), ("pids", "processes"), ("cpu", "cpu")):
             if controller in controllers:
                 found.setdefault(resource, []).extend(place)
-    for place in {place for places in found.values() for place in places}:
-        _remove_stale(place)
+    for parent in {place for places in found.values() for place in places}:
+        _remove_stale(parent)
     return found
 
 

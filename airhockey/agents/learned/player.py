@@ -60,6 +60,7 @@ class LearnedPlayer(AgentBase):
         learned_actions.warm_up(self._controls)
         learned_features.warm_up(self._sights)
         self.reset()
+        self._compile()
 
     @classmethod
     def load(cls, folder: Path, env_info: Mapping[str, Any], **kwargs: Any) -> "LearnedPlayer":
@@ -79,6 +80,13 @@ class LearnedPlayer(AgentBase):
         except (OSError, ValueError, KeyError, TypeError, yaml.YAMLError) as error:
             raise ConfigurationError(f"cannot read the policy {str(folder / POLICY)!r}: {error}") from error
         return cls(env_info, network, **choice, **kwargs)
+
+    def _compile(self) -> None:
+        """Play a step, so that none has to wait for the compiler."""
+        nothing = np.zeros(self.env_info["rl_info"].observation_space.shape)
+        nothing[self.env_info["joint_pos_ids"]] = spec_of(self.env_info).start
+        self.draw_action(nothing)
+        self.reset()
 
     def reset(self) -> None:
         """The next observation is an episode's first."""

@@ -127,7 +127,7 @@ def bookkeeping(options: argparse.Namespace) -> None:
             kept = seconds(lambda: folder.add(Game(record, film)))
             size = sum(file.stat().st_size for file in (folder.path / "films").iterdir()) / 1e6
             records = [msgspec.structs.replace(template.record, job=one) for one in jobs]
-            last = seconds(lambda: write_standings(folder.path, names, jobs, records))
+            last = seconds(lambda: write_standings(folder.path, names, jobs, records, {}))
     with tempfile.TemporaryDirectory() as place:
         folder = begin_tournament(plan, Path(place) / "run")
         with folder:

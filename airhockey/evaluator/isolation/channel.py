@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.copying import NotCopyable
 from airhockey.evaluator.isolation.failures import AgentError
 
 Array = NDArray[np.float64]
@@ -62,7 +63,7 @@ def new_memory() -> int:
     return descriptor
 
 
-class Memory:
+class Memory(NotCopyable):
     """One side's view of the shared memory."""
 
     def __init__(self, descriptor: int) -> None:

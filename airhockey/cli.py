@@ -28,6 +28,7 @@ class LazyGroup(click.RichGroup):
         "watch",
         "replay",
         "video",
+        "failures",
         "report",
         "leaderboard",
         "train",
@@ -37,6 +38,7 @@ class LazyGroup(click.RichGroup):
         "validate",
         "package",
         "serve-agent",
+        "doctor",
     )
 
     def list_commands(self, ctx: Any) -> list[str]:

@@ -18,6 +18,14 @@ from airhockey.envs.copying import Copyable
 Array = NDArray[np.float64]
 
 
+def task_of(env_info: Mapping[str, Any]) -> str:
+    """What an agent is to do: "hit", "defend", "prepare" or "tournament", whatever its edition calls the environment.
+
+    Names are `7dof-hit` (2023) or `hit` (2025); `hit_single` is the same task without an opponent.
+    """
+    return str(env_info["env_name"]).rpartition("-")[2].partition("_")[0]
+
+
 class AgentBase(Copyable, abc.ABC):
     """A player that is given `env_info` once and an observation at every control step.
 

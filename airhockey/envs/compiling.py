@@ -40,7 +40,7 @@ def compiler(home: pathlib.Path, sources: Iterable[pathlib.Path], **options: Any
         raise EnvironmentFault(
             "numba's compiler is disabled, and nothing can be simulated without: unset NUMBA_DISABLE_JIT"
         )
-    cache = _cache_folder(home, sources)
+    cache = cache_folder(home, sources)
 
     def compiled(function: Function) -> Function:
         before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, cache
@@ -52,7 +52,8 @@ def compiler(home: pathlib.Path, sources: Iterable[pathlib.Path], **options: Any
     return compiled
 
 
-def _cache_folder(home: pathlib.Path, sources: Iterable[pathlib.Path]) -> str:
+def cache_folder(home: pathlib.Path, sources: Iterable[pathlib.Path]) -> str:
+    """Where the compiled code of a group is kept; see `compiler`."""
     fingerprint = hashlib.sha256(b"\0".join(source.read_bytes() for source in sorted(sources))).hexdigest()[:16]
     name = f"compiled-{fingerprint}"
     if numba.config.CACHE_DIR:

@@ -20,7 +20,17 @@ from airhockey.evaluator.play.episode import EpisodePlayer, failed
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 from airhockey.evaluator.runs.journal import read_journal
 from airhockey.evaluator.runs.manifest import Manifest
-from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, Options, RunResult, RunTime, TaskResult
+from airhockey.evaluator.runs.records import (
+    Episode,
+    EpisodeRecord,
+    Job,
+    Options,
+    PreparationTime,
+    RunResult,
+    RunTime,
+    TaskResult,
+    isolation_of,
+)
 from airhockey.evaluator.runs.trajectories import TRAJECTORIES, read_steps
 
 OnEpisode = Callable[[EpisodeRecord], None]
@@ -62,7 +72,7 @@ def evaluate(folder: EpisodeFolder, engine: Engine | None = None, on_episode: On
 def _lost(job: Job, result: JobFailed, options: Options) -> Episode:
     """An episode whose worker died every time; the agent's failure where its code ran there."""
     worker_lost((options.agent,), options.isolate, result.reason)
-    return failed(job, result.reason)
+    return failed(job, result.reason, options.edition)
 
 
 def play_episode(options: Options, env: str, index: int) -> Episode:
@@ -100,7 +110,7 @@ def report(path: Path) -> Result:
         return results[0]
     phase, score = judging.score({result.env: result.success for result in results}, edition(options.edition))
     worst = judging.worst_class(result.deployability for result in results)
-    return RunResult(results=results, deployability=worst, phase=phase, score=score)
+    return RunResult(results=results, deployability=worst, phase=phase, score=score, edition=options.edition)
 
 
 def failure_reasons(path: Path, most: int = 3) -> list[tuple[str, int]]:
@@ -125,6 +135,12 @@ def _task_result(path: Path, manifest: Manifest[Options], env: str, records: lis
         computation_time=_run_time(read_steps(path / TRAJECTORIES, env, "computation_time")),
         agent_errors=verdict.failures,
         inputs=manifest.inputs,
+        edition=options.edition,
+        isolation=isolation_of(record.process for record in records),
+        preparation_time=PreparationTime(
+            build_agent=max((record.process.build_time for record in records), default=0.0),
+            episode_start=max((record.process.start_time for record in records), default=0.0),
+        ),
     )
 
 

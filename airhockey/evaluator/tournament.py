@@ -77,21 +77,26 @@ def play_tournament(
     jobs = schedule(options)
     names = [entry.name for entry in options.entries]
 
+    def table_so_far() -> Standings:
+        table = standings(names, jobs, folder.records, options.game.edition)
+        return write_standings(folder.path, msgspec.structs.replace(table, inputs=folder.manifest.inputs))
+
     def on_game(record: GameRecord) -> None:
-        table = write_standings(folder.path, names, jobs, folder.records, folder.manifest.inputs)
+        table = table_so_far()
         if on_standings is not None:
             on_standings(record, table)
 
     with folder:
         play_games(folder, jobs, engine, on_game)
-        return write_standings(folder.path, names, jobs, folder.records, folder.manifest.inputs)
+        return table_so_far()
 
 
 def read_standings(path: Path) -> tuple[Manifest[TournamentOptions], Standings]:
     """The standings of a tournament from its folder, finished or not, without playing."""
     manifest = TournamentFolder.read(path)
-    names = [entry.name for entry in manifest.options.entries]
-    found = standings(names, schedule(manifest.options), read_journal(path, GameRecord).records)
+    options = manifest.options
+    names, records = [entry.name for entry in options.entries], read_journal(path, GameRecord).records
+    found = standings(names, schedule(options), records, options.game.edition)
     return manifest, msgspec.structs.replace(found, inputs=manifest.inputs)
 
 

@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 
 from airhockey import envs
+from airhockey.envs.editions import DEFAULT
 from airhockey.errors import ActionError, AirHockeyError
 from airhockey.evaluator.isolation.failures import AgentDied, AgentTimeout, describe
 from airhockey.evaluator.isolation.limits import Limits
@@ -56,12 +57,12 @@ class Trial(msgspec.Struct, frozen=True):
     thinking: float = 0.0
 
 
-def try_out(mine: Entrant, task: str, steps: int, side: int = 1) -> Trial | Problem:
+def try_out(mine: Entrant, task: str, steps: int, side: int = 1, edition: str = DEFAULT) -> Trial | Problem:
     """Play a few steps of one task, alone or against somebody who stands still."""
     limits = mine.limits
     entrants = [mine] if task != GAME else [mine, Entrant("hold")] if side == 1 else [Entrant("hold"), mine]
     began = time.perf_counter()
-    env, seats = build_seats(functools.partial(envs.make, task), entrants, Care())
+    env, seats = build_seats(functools.partial(envs.make, task, edition=edition), entrants, Care())
     start, seat, rollout = time.perf_counter() - began, seats[side - 1], Rollout(env, seats, seed=0)
     where = task if side == 1 else f"{task} (away)"
     if seat.agent is None or seat.error is not None:

@@ -28,6 +28,10 @@ KEYS = [
     "violations",
     "computation_time",
     "agent_errors",
+    "inputs",
+    "edition",
+    "isolation",
+    "preparation_time",
 ]
 
 
@@ -109,7 +113,8 @@ def test_a_cluster_gives_what_this_machine_gives(hockey: Hockey) -> None:
     """But for the time that it took."""
     run = "evaluate --env 3dof-defend --agent hold --episodes 20 --disturbances server --json --quiet"
     here, there = (json.loads(hockey(f"{run} {where}")[1]) for where in ("--jobs 1", "--cluster local:1"))
-    assert here.pop("computation_time").keys() == there.pop("computation_time").keys()
+    for times in ("computation_time", "preparation_time"):
+        assert here.pop(times).keys() == there.pop(times).keys()
     assert here == there
 
 
@@ -122,7 +127,7 @@ def test_every_task_of_a_robot(hockey: Hockey) -> None:
     assert "stored in runs/3dof-all-hold-s0" in out
     status, out, _ = hockey(f"{arguments} --json")
     result = json.loads(out)
-    assert list(result) == ["results", "deployability", "phase", "score"]
+    assert list(result) == ["results", "deployability", "phase", "score", "edition"]
     assert [task["env"] for task in result["results"]] == ["3dof-hit", "3dof-defend"]
     assert all(list(task) == KEYS for task in result["results"])
     assert Path("runs/3dof-all-hold-s0-2").is_dir()  # never into another run's folder

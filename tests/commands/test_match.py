@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from command_line import Hockey
 
-KEYS = ["home", "away", "disturbances", "games", "wins", "draws", "losses"]
+KEYS = ["home", "away", "disturbances", "games", "wins", "draws", "losses", "edition"]
 GAME_KEYS = {"seed", "steps", "score", "goals", "faults", "penalty", "deployability", "winner", "events"}
 SHORT = "--steps 60 --jobs 1"
 

@@ -80,7 +80,7 @@ def test_a_defence_is_rewarded_as_the_thesis_says_and_shaped():
         before = env._now
         _, reward, over, _, info = env.step(np.zeros(2))
         total += reward - env.shaping(before, env._now)
-    speed = min(np.hypot(*env._now.puck[2:4]), 2.0)
+    speed = min(np.hypot(*env._now.puck.state[2:4]), 2.0)
     assert total == pytest.approx((10.0 if info["success"] else -1.0) - 2.0 * speed, abs=1e-6)
 
 

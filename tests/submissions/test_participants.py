@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tools import needs_opencv
+import tools
 
 from airhockey import envs
 from airhockey.agents.submission import submission_config, wanted_order
@@ -46,11 +46,10 @@ REFUSED = {
 
 PLAY_HERE = """
 import sys
-sys.path.insert(0, {here!r})
+sys.path[:0] = {here!r}
 import numpy as np
 from pathlib import Path
 from test_participants import PLAYS, play, tasks
-from tools import needs_opencv
 zoo, told = Path({zoo!r}), {{}}
 for name in PLAYS:
     told[name] = list(play(zoo / name, tasks(zoo / name)[0], "none"))
@@ -63,7 +62,7 @@ np.savez({target!r}, **told)
 @pytest.fixture(scope="session", autouse=True)
 def opencv() -> None:
     """Some entries import MushroomRL, which imports it."""
-    needs_opencv()
+    tools.needs_opencv()
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +80,8 @@ def zoo(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def here(zoo: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
     """What each does without isolation, one after the other in one process: entry -> actions; away games as "NAME away"."""
     target = tmp_path_factory.mktemp("actions") / "here.npz"
-    code = PLAY_HERE.format(here=str(Path(__file__).parent), zoo=str(zoo), target=str(target))
+    here = [str(Path(__file__).parent), str(Path(tools.__file__).parent)]
+    code = PLAY_HERE.format(here=here, zoo=str(zoo), target=str(target))
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-2000:]
     return dict(np.load(target))

@@ -11,13 +11,14 @@ the order in which the games happened to be played.
 
 import csv
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
+from airhockey.envs.editions import DEFAULT
 from airhockey.evaluator.runs.disk import disk_errors, replace_file, write_record
 from airhockey.evaluator.runs.game_records import GameJob, GameRecord, in_order
 
@@ -58,12 +59,13 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Standings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """All rows, best first, how far the tournament is, and the manifest's `inputs`."""
+    """All rows, best first, how far the tournament is, the year whose rules apply, and the manifest's `inputs`."""
 
     rows: tuple[Row, ...]
     played: int
     games: int
     inputs: dict[str, str] = {}
+    edition: str = DEFAULT
 
 
 class _Score:
@@ -87,13 +89,16 @@ class _Score:
         return self.points, self.difference, self.points_for
 
 
-def standings(names: Sequence[str], jobs: Sequence[GameJob], records: Iterable[GameRecord]) -> Standings:
+def standings(
+    names: Sequence[str], jobs: Sequence[GameJob], records: Iterable[GameRecord], edition: str = DEFAULT
+) -> Standings:
     """The standings after some of the scheduled games.
 
     Args:
         names: Of the entries.
         jobs: The schedule.
         records: Of games played, in any order; games that are not of the schedule do not count.
+        edition: The year whose rules apply.
     """
     played = in_order(list(records), [job.key for job in jobs])
     scores = {name: _Score() for name in names}
@@ -125,14 +130,11 @@ def standings(names: Sequence[str], jobs: Sequence[GameJob], records: Iterable[G
                 uncertainty=ratings[name][1],
             )
         )
-    return Standings(rows=tuple(rows), played=len(played), games=len(jobs))
+    return Standings(rows=tuple(rows), played=len(played), games=len(jobs), edition=edition)
 
 
-def write_standings(
-    path: Path, names: Sequence[str], jobs: Sequence[GameJob], records: list[GameRecord], inputs: Mapping[str, str]
-) -> Standings:
-    """Compute the standings and leave them, with the `inputs` of the manifest, as standings.json and standings.csv."""
-    table = msgspec.structs.replace(standings(names, jobs, records), inputs=dict(inputs))
+def write_standings(path: Path, table: Standings) -> Standings:
+    """Leave the standings as standings.json and standings.csv."""
     with disk_errors(path):
         write_record(path / "standings.json", table)
         replace_file(path / "standings.csv", as_csv(table).encode())

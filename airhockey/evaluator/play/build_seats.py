@@ -1,9 +1,10 @@
 """Agents take their seats at an environment, in the interpolation orders that were asked for or that they want."""
 
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +18,9 @@ from airhockey.evaluator.play.seat import Care, Seat
 from airhockey.evaluator.play.seeding import seed_global_generators
 from airhockey.evaluator.runs.game_records import SIDES
 from airhockey.evaluator.runs.records import Order
+
+if TYPE_CHECKING:
+    from airhockey.evaluator.isolation.modes import Mode
 
 Orders = tuple[int | None, ...]
 
@@ -58,11 +62,12 @@ class Entrant:
             return 3  # the builder will say the same
 
     @property
-    def mode(self) -> Mode:
-        """Where it lives."""
+    def mode(self) -> "Mode":
+        """Where it is to live; raises `ConfigurationError` where this machine cannot have that."""
+
         return choose(self.agent, None if self.isolate == "auto" else self.isolate).mode
 
-    def build(self, env: Any, agent_id: int) -> AgentHandle:
+    def build(self, env: Any, agent_id: int, mode: "Mode") -> AgentHandle:
         """The agent, made for this environment. Raises what its code raises."""
         from airhockey.agents import AGENTS
         from airhockey.evaluator.isolation.build import build_agent
@@ -129,17 +134,21 @@ def _made(make: Callable[[Orders], Any], orders: Orders) -> Any:
 
 
 def _seat(entrant: Entrant, env: Any, k: int, care: Care) -> Seat:
+    mode, began = entrant.mode, time.perf_counter()
     try:
         with care.watch.over(SIDES[k]):
-            agent = entrant.build(env, k + 1)
+            agent = entrant.build(env, k + 1, mode)
     except agent_failures() as failure:
         fault = fault_of_machine(failure, entrant.agent, entrant.mode)
         if fault is not None:
             raise fault from failure
         seat = Seat(None, env.formats[k], care, SIDES[k])
         seat.fail_to_build(failure)
-        return seat
-    return Seat(agent, env.formats[k], care, SIDES[k])
+        seat.isolation = mode
+    else:
+        seat = Seat(agent, env.formats[k], care, SIDES[k])
+    seat.build_time = time.perf_counter() - began
+    return seat
 
 
 def _all_there(seats: Sequence[Seat], orders: Orders) -> bool:

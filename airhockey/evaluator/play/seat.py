@@ -13,6 +13,7 @@ from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.play.blame import fault_of_machine
 from airhockey.evaluator.play.watchdog import Watch
 from airhockey.evaluator.runs.game_records import HOME, Side
+from airhockey.evaluator.runs.records import AgentProcess
 
 Array = NDArray[np.float64]
 
@@ -54,6 +55,8 @@ class Seat:
         action: Its latest command, in the shape of `form`; zeros before the first.
         seconds: The time that it took.
         late: Whether that was too long, and the command is its previous position with zero velocity.
+        isolation: How far the agent is kept apart, see `AgentHandle`.
+        build_time, start_time: Wall time to build it, and of its longest start since the first of this episode, in [s].
         position: The joints that it had at the latest serve, in [rad], to be held if its first command is late. Shape (n,).
     """
 
@@ -64,6 +67,8 @@ class Seat:
         self.clock = agent.clock(care.clock) if agent is not None else time.perf_counter
         self.action = np.zeros(form.shape)
         self.seconds, self.late = 0.0, False
+        self.isolation = "" if agent is None else agent.isolation
+        self.build_time = self.start_time = 0.0
         self.position: Array | None = None
         self._care, self._watch, self._time_limit = care, care.watch, care.time_limit
         self._timely: Array | None = None
@@ -74,12 +79,18 @@ class Seat:
         return "" if self.agent is None else self.agent.phase
 
     @property
+    def process(self) -> AgentProcess:
+        """Where the agent lived, and what it took besides its commands, as records say it."""
+        return AgentProcess(isolation=self.isolation, build_time=self.build_time, start_time=self.start_time)
+
+    @property
     def target(self) -> Any:
         """Where it wants its mallet; see `AgentHandle`."""
         return None if self.agent is None else self.agent.target
 
     def seed(self, sequence: np.random.SeedSequence) -> None:
         """Seed the generators that the agent has to itself, when it is started."""
+        self.start_time = 0.0
         if self.agent is not None:
             self.agent.seed(sequence)
 
@@ -87,6 +98,7 @@ class Seat:
         """A serve begins; an agent that failed before does not hear of it. Raises `EnvironmentFault`, as `act` does."""
         if self.agent is None or self.failure is not None:
             return
+        began = time.perf_counter()
         try:
             with self._watch.over(self.side):
                 self.agent.episode_start()
@@ -94,6 +106,8 @@ class Seat:
             self._act, self._timely = self.agent.act, None
         except agent_failures() as failure:
             self._fail(failure, 0)
+        finally:
+            self.start_time = max(self.start_time, time.perf_counter() - began)
 
     def act(self, observation: Array, step: int) -> None:
         """Ask for the command of a control step, from 1; it is then in `action`, or the seat has failed.

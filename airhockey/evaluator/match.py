@@ -109,20 +109,25 @@ def match_jobs(options: MatchOptions) -> list[GameJob]:
     """The games of a match."""
     jobs = []
     for index in range(options.games):
-        players = list(
-            zip(
-                (options.home, options.away),
-                (options.home_order, options.away_order),
-                options.python,
-                options.settings,
-                strict=True,
+        home = options.home, options.home_order, options.python[0], options.settings[0]
+        away = options.away, options.away_order, options.python[1], options.settings[1]
+        left, right = (away, home) if options.swap_sides and index % 2 else (home, away)
+        jobs.append(
+            GameJob(
+                key=str(index),
+                home=left[0],
+                away=right[0],
+                home_agent=left[0],
+                away_agent=right[0],
+                seed=game_seed(options.seed, str(index)),
+                home_order=left[1],
+                away_order=right[1],
+                home_python=left[2],
+                away_python=right[2],
+                home_settings=left[3],
+                away_settings=right[3],
             )
         )
-        agents, orders, pythons, settings = zip(
-            *(players[::-1] if options.swap_sides and index % 2 else players), strict=True
-        )
-        seed = game_seed(options.seed, str(index))
-        jobs.append(GameJob(str(index), *agents, *agents, seed, *orders, *pythons, *settings))
     return jobs
 
 

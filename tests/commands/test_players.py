@@ -45,7 +45,10 @@ def test_a_submission_in_a_match_has_a_python_of_its_own(
 def test_settings_are_one_players_or_everybodys(hockey: Hockey) -> None:
     line = f"match thesis thesis {SHORT} --set control.kinematics=compiled --set away:control.solver=dual"
     assert hockey(f"{line} --swap-sides --games 2 --out run")[0] == 0
-    assert options("run")["settings"] == [["control.kinematics=compiled"], ["control.kinematics=compiled", "control.solver=dual"]]
+    assert options("run")["settings"] == [
+        ["control.kinematics=compiled"],
+        ["control.kinematics=compiled", "control.solver=dual"],
+    ]
     jobs = [json.loads(line)["job"] for line in Path("run/journal.jsonl").read_text().splitlines()]
     first, second = sorted(jobs, key=lambda job: job["key"])
     assert first["home_settings"] == second["away_settings"] == ["control.kinematics=compiled"]

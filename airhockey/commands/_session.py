@@ -17,17 +17,18 @@ import msgspec
 from airhockey.agents import AGENTS
 from airhockey.envs.disturbances import available
 from airhockey.envs.editions import DEFAULT, edition_of_names
-from airhockey.errors import ConfigurationError
+from airhockey.errors import ConfigurationError, EnvironmentFault, SimulationError
 from airhockey.evaluator.engines.cluster import engine_of
 from airhockey.evaluator.engines.engine import Engine
 from airhockey.evaluator.isolation.modes import REMOTE, choose
 from airhockey.evaluator.runs.folder import RunFolder
 from airhockey.evaluator.runs.game_records import GameOptions
 from airhockey.evaluator.runs.manifest import has_option, option_of
-from airhockey.inputs.names import shown
+from airhockey.inputs.names import one_line, shown
 from airhockey.learning.diverged import DivergedError
 
-AGENT_FAILED, DIVERGED, INTERRUPTED = 3, 4, 130
+AGENT_FAILED, NOBODYS_FAULT, INTERRUPTED = 3, 4, 130
+"""Exit statuses: an agent failed; environment, profile, machine or a training did, and no agent; the user stopped it."""
 RUNS = Path("runs")
 MOST_NOTES = 5
 
@@ -109,17 +110,23 @@ class Session:
             with stdout_for_the_result(), progress as shown:
                 result = play(shown)
         except KeyboardInterrupt:
-            after = f" after {len(folder.records)} of {whole}" if whole else ""
-            click.echo(
-                f"hockey: interrupted{after}; continue with:\n"
-                f"  hockey {self.command} --resume --out {shlex.quote(str(folder.path))}",
-                err=True,
-            )
+            self._say_how_to_go_on(folder, "interrupted", whole)
             return INTERRUPTED
+        except (EnvironmentFault, SimulationError) as error:
+            self._say_how_to_go_on(folder, f"{one_line(str(error))}; stopped", whole)
+            return NOBODYS_FAULT
         except DivergedError as error:
             click.echo(f"hockey: the training diverged: {error}; the run keeps what was good before", err=True)
-            return DIVERGED
+            return NOBODYS_FAULT
         return show(result)
+
+    def _say_how_to_go_on(self, folder: Folder, why: str, whole: str) -> None:
+        after = f" after {len(folder.records)} of {whole}" if whole else ""
+        click.echo(
+            f"hockey: {why}{after}; continue with:\n"
+            f"  hockey {self.command} --resume --out {shlex.quote(str(folder.path))}",
+            err=True,
+        )
 
     def print(self, folder: Folder, result: msgspec.Struct, table: Callable[[], None]) -> None:
         """Print a result as JSON, or as a table that says itself where the result is stored."""

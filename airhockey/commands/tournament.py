@@ -105,7 +105,9 @@ def _print(standings: "Standings", given: dict[str, Any]) -> int:
     elif given["as_csv"]:
         click.echo(as_csv(standings), nl=False)
     else:
-        _tables.print_standings(_tables.output(), standings)
+        console = _tables.output()
+        _tables.print_standings(console, standings)
+        _tables.print_inputs(console, standings.inputs)
     return 0
 
 

@@ -105,7 +105,7 @@ def pgpe(ctx: click.RichContext, /, **given: Any) -> None:
     if given["only"] is not None and given["fix"]:
         raise click.UsageError("--only fixes all other parameters already: leave out --fix")
     from airhockey.commands import _progress
-    from airhockey.commands._session import DIVERGED, INTERRUPTED, Session, cpus
+    from airhockey.commands._session import INTERRUPTED, NOBODYS_FAULT, Session, cpus
     from airhockey.evaluator.engines.engine import engine_for
     from airhockey.learning.pgpe.training import resume, train
 
@@ -126,7 +126,7 @@ def pgpe(ctx: click.RichContext, /, **given: Any) -> None:
     progress = _progress.of_training(head, "episodes", settings.iterations * each, done * each, given["quiet"])
     status = session.run(folder, f"{settings.iterations} iterations", progress, play, lambda _: 0)
     if status != INTERRUPTED:
-        _print_parameters(folder, good="last good " if status == DIVERGED else "")
+        _print_parameters(folder, good="last good " if status == NOBODYS_FAULT else "")
     ctx.exit(status)
 
 

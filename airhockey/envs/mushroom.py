@@ -10,6 +10,7 @@ from airhockey.envs.copying import Copyable
 from airhockey.envs.editions import DEFAULT, edition_of_names
 from airhockey.envs.environment import Environment as ChallengeEnvironment
 from airhockey.envs.info import RLInfo
+from airhockey.envs.rendering.render import MODES, Renderer
 from airhockey.envs.tasks.reward import RewardedState
 from airhockey.errors import MissingDependencyError
 
@@ -127,6 +128,7 @@ class AirHockeyChallengeWrapper(Copyable, Environment):
         self.env_info["rl_info"] = _mdp_info(self.env_info["rl_info"])
         self.base_env = BaseEnvironment(self._env, self.env_info)
         self._reward = custom_reward_function
+        self._edition, self._renderers = edition, dict[str, Renderer]()
         self._draw_from_global()
         self._env.new_game()
         super().__init__(self.env_info["rl_info"])
@@ -154,8 +156,26 @@ class AirHockeyChallengeWrapper(Copyable, Environment):
         reward = self._reward(self.base_env, before, action, self._env.base_observation, absorbing)
         return observation, reward, absorbing, info
 
+    def render(self, record: bool = False) -> Any:
+        """Show the present moment, live.
+
+        Args:
+            record: Also give it as a picture.
+
+        Returns:
+            With `record` an array of shape (height, width, 3), else None.
+        """
+        if not self._renderers:
+            self._renderers = {mode: Renderer(self.env_name, self._edition, mode) for mode in MODES}
+        data = self._env.simulation.data
+        if record:
+            return self._renderers["rgb_array"].render(data)
+        return self._renderers["human"].render(data)
+
     def stop(self) -> None:
-        """Nothing to stop."""
+        """Close what `render` opened."""
+        for renderer in self._renderers.values():
+            renderer.close()
 
     def get_state(self) -> RewardedState:
         """The present moment; see `airhockey.envs.Environment.get_state`. A reward of this package is part of it."""

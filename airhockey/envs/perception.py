@@ -28,13 +28,17 @@ class Perception:
     Args:
         disturbances: The profile.
         n_joints: Number of joints n; an observation is puck (6), joints (2n) and, if there is one, the opponent (3).
+
+    Attributes:
+        deviation: Standard deviations of an observation's entries. Shape (6 + 2n + 3,).
+        random: The player's stream, since the latest reset.
     """
 
     def __init__(self, disturbances: Disturbances, n_joints: int) -> None:
         self._profile = disturbances
         self._n = n_joints
         puck, joints = disturbances.puck, disturbances.joints
-        self._deviation = np.concatenate(
+        self.deviation = np.concatenate(
             (
                 [puck.position, puck.position, puck.yaw, puck.velocity, puck.velocity, puck.yaw_rate],
                 np.full(n_joints, joints.position),
@@ -42,14 +46,14 @@ class Perception:
                 np.full(3, disturbances.opponent.position),
             )
         )
-        self._bias = np.zeros(self._deviation.size)
+        self._bias = np.zeros(self.deviation.size)
         self._seen: deque[Array] = deque(maxlen=disturbances.delay + 1)
         self._lost_for = 0
 
     def reset(self, random: np.random.Generator) -> None:
         """Begin an episode: draw its biases; nothing has been seen yet."""
-        self._random = random
-        self._bias = np.zeros(self._deviation.size)  # a new one: saved states keep the old
+        self.random = random
+        self._bias = np.zeros(self.deviation.size)  # a new one: saved states keep the old
         self._bias[:2] = random.normal(0.0, self._profile.puck.position_bias, 2)
         self._bias[6 : 6 + self._n] = random.normal(0.0, self._profile.joints.position_bias, self._n)
         self._seen.clear()
@@ -58,7 +62,7 @@ class Perception:
     def observe(self, true: Array) -> Array:
         """What the player sees when `true` is the case. Shape as `true`, always a fresh array."""
         size = true.size
-        seen = true + self._bias[:size] + self._deviation[:size] * self._random.standard_normal(size)
+        seen = true + self._bias[:size] + self.deviation[:size] * self.random.standard_normal(size)
         if abs(seen[2]) > math.pi:  # only then: player 2's yaw may be +pi, and wrapping costs the last bit
             seen[2] = (seen[2] + math.pi) % (2.0 * math.pi) - math.pi
         self._lose_track(seen)
@@ -67,11 +71,11 @@ class Perception:
 
     def save(self) -> PerceptionState:
         """What the next observations depend on besides the truth."""
-        return PerceptionState(self._random.bit_generator.state, self._bias, tuple(self._seen), self._lost_for)
+        return PerceptionState(self.random.bit_generator.state, self._bias, tuple(self._seen), self._lost_for)
 
     def restore(self, state: PerceptionState) -> None:
         """Go back to what was saved, of this player or of one like it."""
-        self._random.bit_generator.state = state.random
+        self.random.bit_generator.state = state.random
         self._bias, self._lost_for = state.bias, state.lost_for
         self._seen.clear()
         self._seen.extend(state.seen)
@@ -79,8 +83,8 @@ class Perception:
     def _lose_track(self, seen: Array) -> None:
         """During a loss, show the last state of the puck that was seen."""
         loss = self._profile.track_loss
-        if self._lost_for == 0 and self._random.random() < loss.probability:
-            self._lost_for = int(self._random.integers(loss.length[0], loss.length[1] + 1))
+        if self._lost_for == 0 and self.random.random() < loss.probability:
+            self._lost_for = int(self.random.integers(loss.length[0], loss.length[1] + 1))
         if self._lost_for == 0:
             return
         self._lost_for -= 1

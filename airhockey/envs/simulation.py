@@ -147,9 +147,10 @@ class Simulation(Copyable):
         if code == BAD_ACTION:
             self.flat = before
         if code != DONE:
-            self._complain(code, action, step)
+            self.complain(code, action, step)
 
-    def _complain(self, code: int, action: Array, step: int) -> None:
+    def complain(self, code: int, action: Array, step: int) -> None:
+        """Raise what a code of `control_step` other than `DONE` stands for; see `step`."""
         if code == BAD_ACTION:
             raise ActionError(f"step {step}: the action holds values that are not finite; all must be numbers")
         self.flat = np.full(self._size, np.nan)
@@ -185,6 +186,22 @@ class Simulation(Copyable):
         self.__dict__.update(state)
         self._bind(mujoco.MjData(self.model))
         self._physics.restore(saved)
+
+    def move_into(self, memory: NDArray[Any], flat: Array) -> None:
+        """Work from now on in arrays of the caller's, who may step many simulations in one call.
+
+        Args:
+            memory: Of the type of `memory`. Shape (1,).
+            flat: Shape of `flat`. Written now, and by whoever steps; `step` and `reset` leave a new one behind.
+        """
+        memory[:], self._memory = self._memory, memory
+        flat[:], self.flat = self.flat, flat
+        self._bind(self.data)
+
+    @property
+    def memory(self) -> NDArray[Any]:
+        """The record that compiled code works in. Shape (1,)."""
+        return self._memory
 
     def copy_robot_data(self) -> Any:
         """The robot-only model's data, copied, for the same model."""

@@ -1,7 +1,7 @@
 """A match: some games of one pair of players."""
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import msgspec
@@ -13,13 +13,23 @@ from airhockey.evaluator.engines.engine import Engine, InProcess
 from airhockey.evaluator.engines.pool import JobFailed
 from airhockey.evaluator.isolation.modes import check_python
 from airhockey.evaluator.judging.games import tally
+from airhockey.evaluator.play.blame import worker_lost
 from airhockey.evaluator.play.game import Game, GamePlayer, live_file, lost
 from airhockey.evaluator.play.seeding import game_seed
 from airhockey.evaluator.play.watchdog import culprit
 from airhockey.evaluator.runs.game_folder import GameFolder
-from airhockey.evaluator.runs.game_records import Event, GameJob, GameOptions, GameRecord, Side, Winner, in_order
+from airhockey.evaluator.runs.game_records import (
+    Event,
+    GameJob,
+    GameOptions,
+    GameRecord,
+    PlayerResult,
+    Side,
+    Winner,
+    in_order,
+)
 from airhockey.evaluator.runs.manifest import MATCH
-from airhockey.evaluator.runs.records import Order
+from airhockey.evaluator.runs.records import Order, PreparationTime
 
 OnGame = Callable[[GameRecord], None]
 
@@ -63,15 +73,18 @@ class GameResult(msgspec.Struct, frozen=True, kw_only=True):
     penalty: tuple[float, float]
     deployability: tuple[str, str]
     violations: tuple[dict[str, int], dict[str, int]]
+    computation_time_mean: tuple[float, float]
     computation_time_max: tuple[float, float]
     held: tuple[int, int]
     failures: tuple[str | None, str | None]
+    isolation: tuple[str, str] = ("", "")
+    preparation_time: tuple[PreparationTime, PreparationTime] = (PreparationTime(), PreparationTime())
     winner: Winner
     events: tuple[Event, ...]
 
 
-class MatchResult(msgspec.Struct, frozen=True, kw_only=True):
-    """What `hockey match --json` prints: the games, and how home fared in them."""
+class MatchResult(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """What `hockey match --json` prints: the games, how home fared in them, and the manifest's `inputs`."""
 
     home: str
     away: str
@@ -80,6 +93,7 @@ class MatchResult(msgspec.Struct, frozen=True, kw_only=True):
     wins: int
     draws: int
     losses: int
+    inputs: dict[str, str] = {}
     edition: str = DEFAULT
 
 
@@ -109,25 +123,19 @@ def match_jobs(options: MatchOptions) -> list[GameJob]:
     """The games of a match."""
     jobs = []
     for index in range(options.games):
-        home = options.home, options.home_order, options.python[0], options.settings[0]
-        away = options.away, options.away_order, options.python[1], options.settings[1]
-        left, right = (away, home) if options.swap_sides and index % 2 else (home, away)
-        jobs.append(
-            GameJob(
-                key=str(index),
-                home=left[0],
-                away=right[0],
-                home_agent=left[0],
-                away_agent=right[0],
-                seed=game_seed(options.seed, str(index)),
-                home_order=left[1],
-                away_order=right[1],
-                home_python=left[2],
-                away_python=right[2],
-                home_settings=left[3],
-                away_settings=right[3],
-            )
+        job = GameJob(
+            str(index),
+            options.home,
+            options.away,
+            options.home,
+            options.away,
+            game_seed(options.seed, str(index)),
+            options.home_order,
+            options.away_order,
+            *options.python,
+            *options.settings,
         )
+        jobs.append(job.swapped() if options.swap_sides and index % 2 else job)
     return jobs
 
 
@@ -142,7 +150,7 @@ def play_match(folder: MatchFolder, engine: Engine | None = None, on_game: OnGam
     options = folder.manifest.options
     with folder:
         play_games(folder, match_jobs(options), engine, on_game)
-        result = match_result(options, folder.records)
+        result = match_result(options, folder.records, folder.manifest.inputs)
         folder.keep_result(result)
     return result
 
@@ -164,11 +172,14 @@ def play_games(
 def _game_of(job: GameJob, result: Game | JobFailed, player: GamePlayer) -> Game:
     if not isinstance(result, JobFailed):
         return result
+    worker_lost((job.home_agent, job.away_agent), player.options.isolate, result.reason)
     guilty = None if player.live is None else culprit(live_file(player.live, job))
     return lost(job, player.options, result.reason, guilty)
 
 
-def match_result(options: MatchOptions, records: list[GameRecord]) -> MatchResult:
+def match_result(
+    options: MatchOptions, records: list[GameRecord], inputs: Mapping[str, str] | None = None
+) -> MatchResult:
     """The match from its games, in their order."""
     jobs = match_jobs(options)
     games = tuple(
@@ -184,6 +195,7 @@ def match_result(options: MatchOptions, records: list[GameRecord]) -> MatchResul
         wins=wins,
         draws=draws,
         losses=losses,
+        inputs=dict(inputs or {}),
         edition=options.game.edition,
     )
 
@@ -204,12 +216,19 @@ def _seen_from_home(record: GameRecord, swapped: bool) -> GameResult:
         penalty=(home.penalty, away.penalty),
         deployability=(home.deployability, away.deployability),
         violations=(home.violations, away.violations),
+        computation_time_mean=(home.computation_time.mean, away.computation_time.mean),
         computation_time_max=(home.computation_time.max, away.computation_time.max),
         held=(home.held, away.held),
         failures=(home.failure, away.failure),
+        isolation=(home.process.isolation, away.process.isolation),
+        preparation_time=(_preparation_time(home), _preparation_time(away)),
         winner=winner,
         events=record.events if not swapped else tuple(_swapped(event) for event in record.events),
     )
+
+
+def _preparation_time(player: PlayerResult) -> PreparationTime:
+    return PreparationTime(build_agent=player.process.build_time, episode_start=player.process.start_time)
 
 
 def _swapped(event: Event) -> Event:

@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.engines.engine import Engine
 from airhockey.evaluator.entries import Entry
@@ -76,7 +78,8 @@ def play_tournament(
     names = [entry.name for entry in options.entries]
 
     def table_so_far() -> Standings:
-        return write_standings(folder.path, names, jobs, folder.records, options.game.edition)
+        table = standings(names, jobs, folder.records, options.game.edition)
+        return write_standings(folder.path, msgspec.structs.replace(table, inputs=folder.manifest.inputs))
 
     def on_game(record: GameRecord) -> None:
         table = table_so_far()
@@ -93,7 +96,8 @@ def read_standings(path: Path) -> tuple[Manifest[TournamentOptions], Standings]:
     manifest = TournamentFolder.read(path)
     options = manifest.options
     names, records = [entry.name for entry in options.entries], read_journal(path, GameRecord).records
-    return manifest, standings(names, schedule(options), records, options.game.edition)
+    found = standings(names, schedule(options), records, options.game.edition)
+    return manifest, msgspec.structs.replace(found, inputs=manifest.inputs)
 
 
 def _check_played(records: Iterable[GameRecord], options: TournamentOptions) -> None:

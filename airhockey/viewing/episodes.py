@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs.editions import DEFAULT, ROBOTS, edition
+from airhockey.envs.rendering.scene_view import SceneView
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.recording import Moment, Recording
-from airhockey.viewing.scene_view import SceneView
 
 Array = NDArray[np.float64]
 ACHIEVED = {"hit": ("goal", "goal"), "defend": ("save", "puck stopped"), "prepare": ("prepared", "puck in reach")}

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.envs.editions import edition
+from airhockey.envs.rendering.marks import TARGETS, Mark, path, target
+from airhockey.envs.rendering.scene_view import SceneView
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.errors import AirHockeyError
 from airhockey.evaluator.play import seeding
@@ -19,9 +21,7 @@ from airhockey.evaluator.runs.records import Job, Options
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.episodes import ACHIEVED
 from airhockey.viewing.games import LOOKED_AT, NEWS_STEPS, latest, moment_of
-from airhockey.viewing.marks import TARGETS, Mark, path, target
 from airhockey.viewing.playback import predicted_path
-from airhockey.viewing.scene_view import SceneView
 
 Array = NDArray[np.float64]
 AHEAD = 0.15

@@ -7,12 +7,12 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.rendering.marks import PREDICTED, Mark, path
+from airhockey.envs.rendering.scene_view import SceneView
 from airhockey.envs.specs import TABLE
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.entries import Entry
-from airhockey.viewing.marks import PREDICTED, Mark, path
 from airhockey.viewing.recording import Recording
-from airhockey.viewing.scene_view import SceneView
 from airhockey.viewing.video import trail
 
 Array = NDArray[np.float64]

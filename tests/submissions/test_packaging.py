@@ -247,3 +247,15 @@ def submission_with(tmp_path: Path) -> Callable[[str], Path]:
         return tmp_path / word
 
     return write
+
+
+@pytest.mark.parametrize("name", ["submission.yaml", "agent_config.yml"])
+def test_a_folder_or_a_pipe_in_a_files_place_is_refused(folder: Path, name: str) -> None:
+    """Neither is passed over as if nothing were there, nor waited for."""
+    place = submission_folder(folder) / name
+    place.unlink(missing_ok=True)
+    for put_there in (os.mkdir, os.mkfifo):
+        put_there(place)
+        with pytest.raises(ConfigurationError, match="is no file"):
+            read_metadata(place.parent) if name == "submission.yaml" else submission_config(folder)
+        place.rmdir() if place.is_dir() else place.unlink()

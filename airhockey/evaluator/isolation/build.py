@@ -70,4 +70,4 @@ def build_agent(
             "agent_id": agent_id,
             "kwargs": kwargs,
         }
-    return IsolatedAgent(launch, job, limits, seed)
+    return IsolatedAgent(launch, job, limits, seed, agent)

@@ -191,6 +191,8 @@ def restrict(job):
         os.setresuid(user, user, user)
     if job["sandbox"]:
         filter_system_calls(libc, job["kernel"])
+    else:
+        libc.prctl(36, 1, 0, 0, 0)
     if user is not None:
         libc.prctl(4, 1, 0, 0, 0)
     libc.prctl(1, int(signal.SIGKILL), 0, 0, 0)

@@ -38,6 +38,11 @@ class AgentHandle(abc.ABC):
         return ()
 
     @property
+    def isolation(self) -> str:
+        """How far it is kept apart, and what limits it, as a record says it."""
+        return "none"
+
+    @property
     def printed(self) -> str:
         """The end of what it wrote to its standard output and error, where that is kept."""
         return ""

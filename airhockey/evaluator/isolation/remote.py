@@ -55,6 +55,11 @@ class RemoteAgent(AgentHandle):
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     @property
+    def isolation(self) -> str:
+        """It is somewhere else."""
+        return "remote"
+
+    @property
     def preprocessors(self) -> tuple[Callable[[Array], Array], ...]:
         """The agent's own, which are applied over there."""
         return (self._preprocess,)

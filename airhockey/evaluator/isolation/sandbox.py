@@ -40,9 +40,10 @@ def walls(scratch: int, software: Sequence[str] | None = None) -> list[str]:
     ]
 
 
-def closing() -> list[str]:
-    """bubblewrap's last arguments before the command inside: nothing more is shown, and nothing can be written."""
-    return ["--remount-ro", "/proc", "--remount-ro", "/dev", "--remount-ro", "/", "--"]
+def closing(more: Sequence[str] = ()) -> list[str]:
+    """bubblewrap's last arguments before the command inside: nothing more is shown, nothing can be written, here and there."""
+    places = ("/proc", "/dev", "/", *more)
+    return [*(word for place in places for word in ("--remount-ro", place)), "--"]
 
 
 def new_user() -> int | None:

@@ -58,12 +58,13 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     uncertainty: float
 
 
-class Standings(msgspec.Struct, frozen=True, kw_only=True):
-    """All rows, best first, how far the tournament is, and the year whose rules apply."""
+class Standings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """All rows, best first, how far the tournament is, the year whose rules apply, and the manifest's `inputs`."""
 
     rows: tuple[Row, ...]
     played: int
     games: int
+    inputs: dict[str, str] = {}
     edition: str = DEFAULT
 
 
@@ -132,11 +133,8 @@ def standings(
     return Standings(rows=tuple(rows), played=len(played), games=len(jobs), edition=edition)
 
 
-def write_standings(
-    path: Path, names: Sequence[str], jobs: Sequence[GameJob], records: list[GameRecord], edition: str = DEFAULT
-) -> Standings:
-    """Compute the standings and leave them as standings.json and standings.csv."""
-    table = standings(names, jobs, records, edition)
+def write_standings(path: Path, table: Standings) -> Standings:
+    """Leave the standings as standings.json and standings.csv."""
     with disk_errors(path):
         write_record(path / "standings.json", table)
         replace_file(path / "standings.csv", as_csv(table).encode())

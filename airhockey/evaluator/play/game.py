@@ -188,6 +188,7 @@ class GamePlay:
             violations=dict(penalties.count.violations),
             held=penalties.held,
             computation_time=penalties.computation_time,
+            process=self.seats[k].process,
             failure=self.seats[k].failure,
         )
 

@@ -6,7 +6,7 @@ from typing import Literal
 import msgspec
 
 from airhockey.envs.editions import DEFAULT
-from airhockey.evaluator.runs.records import Order, StepTime
+from airhockey.evaluator.runs.records import AgentProcess, Order, StepTime
 
 Side = Literal["home", "away"]
 Winner = Literal["home", "away", "draw"]
@@ -76,6 +76,12 @@ class GameJob(msgspec.Struct, frozen=True):
     home_settings: tuple[str, ...] = ()
     away_settings: tuple[str, ...] = ()
 
+    def swapped(self) -> "GameJob":
+        """The same game with the players on each other's side."""
+        sides = [(f"home{what}", f"away{what}") for what in ("", "_agent", "_order", "_python", "_settings")]
+        there = {one: getattr(self, other) for home, away in sides for one, other in ((home, away), (away, home))}
+        return msgspec.structs.replace(self, **there)
+
 
 class Status(msgspec.Struct, frozen=True, kw_only=True):
     """How a game in progress stands, for a live line.
@@ -135,6 +141,7 @@ class PlayerResult(msgspec.Struct, frozen=True, kw_only=True):
         violations: Constraint name -> number of episodes that violated it; "computation_time" is one of them.
         held: Steps in which its command was held because it took too long.
         computation_time: Of `draw_action`, in [s].
+        process: Where it lived.
         failure: Why it forfeited.
     """
 
@@ -146,6 +153,7 @@ class PlayerResult(msgspec.Struct, frozen=True, kw_only=True):
     violations: dict[str, int]
     held: int
     computation_time: StepTime
+    process: AgentProcess = AgentProcess()
     failure: str | None = None
 
     @property

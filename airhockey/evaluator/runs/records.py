@@ -1,5 +1,6 @@
 """What a run is asked to do and what it leaves behind, as typed records that travel as JSON."""
 
+from collections.abc import Iterable
 from typing import Literal
 
 import msgspec
@@ -75,6 +76,26 @@ class StepTime(msgspec.Struct, frozen=True, kw_only=True):
     max: float = 0.0
 
 
+class AgentProcess(msgspec.Struct, frozen=True, kw_only=True):
+    """Where an agent lived, and the wall time that it took besides its commands.
+
+    Attributes:
+        isolation: How far it was kept apart, by what, and what was not limited; "none": it lived with the evaluator; "": there
+            was none, or the journal is older than this field.
+        build_time: To build it, in [s].
+        start_time: Of the longest start of an episode or serve, in [s].
+    """
+
+    isolation: str = ""
+    build_time: float = 0.0
+    start_time: float = 0.0
+
+
+def isolation_of(processes: Iterable[AgentProcess]) -> str:
+    """How agents were kept apart, as their records say; "" where none does."""
+    return " / ".join(dict.fromkeys(process.isolation for process in processes if process.isolation))
+
+
 class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
     """One line of the journal.
 
@@ -86,6 +107,7 @@ class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
         absorbing: Whether the task ended the episode; False at the horizon and where the agent failed.
         violations: Constraint name -> number of steps that violated it.
         computation_time: Of `draw_action`.
+        process: Where the agent lived.
         error: Why the agent failed the episode; None where it did not.
         edition: The year whose rules applied.
     """
@@ -97,6 +119,7 @@ class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
     absorbing: bool = False
     violations: dict[str, int] = {}
     computation_time: StepTime = StepTime()
+    process: AgentProcess = AgentProcess()
     error: str | None = None
     edition: str = DEFAULT
 
@@ -119,11 +142,23 @@ class Episode(msgspec.Struct, frozen=True):
 
 
 class RunTime(msgspec.Struct, frozen=True, kw_only=True):
-    """Time that `draw_action` took over a whole task, in [s]."""
+    """Time that `draw_action` took over a whole task, in [s].
+
+    Attributes:
+        late: Steps in which it took longer than a control step lasts.
+    """
 
     mean: float
     p99: float
     max: float
+    late: int = 0
+
+
+class PreparationTime(msgspec.Struct, frozen=True, kw_only=True):
+    """The longest wall times that an agent took besides its commands, in [s]."""
+
+    build_agent: float = 0.0
+    episode_start: float = 0.0
 
 
 class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
@@ -134,7 +169,9 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
         penalty: Penalty points, summed over the episodes.
         violations: Constraint name -> number of episodes that violated it.
         agent_errors: Number of episodes that the agent failed.
+        inputs: See `Manifest`.
         edition: The year whose rules applied.
+        isolation: How far the agent was kept apart, see `AgentProcess`; all of them where machines differ.
     """
 
     env: str
@@ -148,7 +185,10 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
     violations: dict[str, int]
     computation_time: RunTime
     agent_errors: int
+    inputs: dict[str, str] = {}
     edition: str = DEFAULT
+    isolation: str = ""
+    preparation_time: PreparationTime = PreparationTime()
 
     @property
     def tasks(self) -> "tuple[TaskResult, ...]":

@@ -41,7 +41,11 @@ class RestingPuck:
 
     def see(self, puck: PuckEstimate) -> None:
         """Take an estimate."""
-        x, y, count = float(puck.state[0]), float(puck.state[1]), self._count  # plain numbers: it is called in every step
+        x, y, count = (
+            float(puck.state[0]),
+            float(puck.state[1]),
+            self._count,
+        )  # plain numbers: it is called in every step
         if puck.speed > ROLLING or (count > 0 and hypot(x - self._sum_x / count, y - self._sum_y / count) > MOVED):
             self.reset()
         if self.playable is None:

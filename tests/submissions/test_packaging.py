@@ -127,6 +127,8 @@ def link() -> zipfile.ZipInfo:
         ("a\\..\\b", "Windows"),
         ("new\nline", "not UTF-8 text"),
         ("e\u0301.py", "decomposed"),
+        ("\u202egpj.exe", "turn a line around"),
+        ("agent\u200b.py", "nobody sees"),
         ("x" * 300, "longer than"),
         (link(), "a link"),
     ],

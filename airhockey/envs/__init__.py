@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from airhockey.envs.editions import Edition, edition
     from airhockey.envs.environment import Environment
     from airhockey.envs.mushroom import AirHockeyChallengeWrapper
+    from airhockey.envs.vector.environment import VectorEnvironment
 
 ENVIRONMENTS = ("3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare", "tournament")
 """The names that `make` accepts."""
@@ -29,9 +30,11 @@ __all__ = [
     "Disturbances",
     "Edition",
     "Environment",
+    "VectorEnvironment",
     "edition",
     "load_disturbances",
     "make",
+    "make_vec",
     "versions",
 ]
 
@@ -42,6 +45,7 @@ _HOMES = {
     "Edition": "editions",
     "edition": "editions",
     "Environment": "environment",
+    "VectorEnvironment": "vector.environment",
 }
 
 
@@ -60,6 +64,25 @@ def make(
     from airhockey.envs.environment import Environment
 
     return Environment(name, interpolation_order, disturbances, edition, visual)
+
+
+def make_vec(
+    name: str,
+    num_envs: int,
+    threads: int = 1,
+    seed: Any = None,
+    interpolation_order: Any = 3,
+    disturbances: "str | Any" = "ideal",
+    edition: str = "2023",
+) -> "VectorEnvironment":
+    """Make many environments, stepped by threads in one compiled call; see `VectorEnvironment` for the arguments.
+
+    Raises:
+        ConfigurationError: An unknown name, order, profile or edition; no environments, or no threads.
+    """
+    from airhockey.envs.vector.environment import VectorEnvironment
+
+    return VectorEnvironment(name, num_envs, interpolation_order, disturbances, edition, threads, seed)
 
 
 def versions() -> dict[str, str]:

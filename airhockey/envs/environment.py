@@ -17,6 +17,7 @@ from airhockey.envs.kernel.memory import bytes_from, pack, view
 from airhockey.envs.kernel.opponent import ORDER as OPPONENT_ORDER
 from airhockey.envs.perception import Perception
 from airhockey.envs.plant_mismatch import PlantMismatch
+from airhockey.envs.random_stream import Stream
 from airhockey.envs.simulation import Simulation, SimulationState
 from airhockey.envs.specs import CONTROL_PERIOD, SUBSTEPS, TABLE
 from airhockey.envs.tasks import task, verdicts
@@ -43,12 +44,12 @@ class Episode(NamedTuple):
 
 
 class State(NamedTuple):
-    """A moment of an environment, which `Environment.set_state` goes back to: plain numbers and arrays, to be kept or pickled.
+    """A moment of an environment, which `Environment.set_state` goes back to: numbers, bytes and arrays, to be kept or pickled.
 
     Attributes:
         made_for: Name, interpolation orders, edition and disturbances of the environment.
         simulation: Physics, controllers, filters, the opponent, the latest readings.
-        game: Score, faults, sides, timer. Shape (1,).
+        game: Score, faults, sides, timer.
         progress: Steps, verdict, success.
         episode: What the latest reset decided.
         streams: States of the random stream of the plant and of each player's perception, where they go on at every step.
@@ -56,7 +57,7 @@ class State(NamedTuple):
 
     made_for: tuple[Any, ...]
     simulation: SimulationState
-    game: NDArray[Any]
+    game: bytes
     progress: tuple[int, int, bool]
     episode: Episode
     streams: Any
@@ -100,6 +101,11 @@ class Environment(Copyable):
         game: What the referee remembers of a game: score, faults, sides and timer.
         verdict: The referee's, of the latest step (`airhockey.envs.tasks.verdicts`).
         succeeded: Whether the task would count as a success if it ended after the latest step.
+        perceptions: Each player's.
+        plant_random: The stream of the plant: its mismatch, and the torques that are added to the motors'.
+        torque_deviation: Of those torques, in [N·m]. Shape (n,).
+        observation_slice, constraints_slice: Where the players' true observations and constraint values stand in
+            `simulation.flat`.
     """
 
     dt = CONTROL_PERIOD
@@ -144,16 +150,15 @@ class Environment(Copyable):
         self._make_views()
         self._make_slices()
         self._no_noise = np.zeros((0, self.n_agents, robot.n_joints))
-        self._torque_deviation = self.disturbances.torque * self.simulation.arm.torque_limit
+        self.torque_deviation = self.disturbances.torque * self.simulation.arm.torque_limit
         self._mismatch = PlantMismatch(self.simulation.model, robot, self.n_agents)
         self._blurred = self.disturbances.blurs_observations
-        self._perceptions = [Perception(self.disturbances, robot.n_joints) for _ in range(self.n_players)]
+        self.perceptions = [Perception(self.disturbances, robot.n_joints) for _ in range(self.n_players)]
         self._start_is_own = True
         self._episode: Episode | None = None
         self._draws_at_steps = self._blurred or self.disturbances.torque > 0.0
         self._made_for = (name, tuple(orders), edition_name, self.disturbances)
         self._start_random = np.random.RandomState(0)
-        self._plant_random = np.random.default_rng(0)
         self._perception_randoms: list[np.random.Generator] = []
         self._seed_streams(np.random.SeedSequence())
         self.reset()
@@ -166,12 +171,12 @@ class Environment(Copyable):
     @property
     def true_observation(self) -> Array:
         """The observation without disturbances, which judging uses."""
-        return self.simulation.flat[self._observations].copy()
+        return self.simulation.flat[self.observation_slice].copy()
 
     @property
     def constraint_values(self) -> Array:
         """Constraint values of the latest step, violated where positive; shape (K,), in the tournament (2, K)."""
-        values = self.simulation.flat[self._judged]
+        values = self.simulation.flat[self.constraints_slice]
         return values.reshape((2, -1)) if self.n_players == 2 else values
 
     @property
@@ -209,13 +214,13 @@ class Environment(Copyable):
         if start_random is not None:
             self.draw_starts_from(start_random)
         self._episode = None
-        self._mismatch.apply(self.disturbances.mismatch, self._plant_random)
+        self._mismatch.apply(self.disturbances.mismatch, self.plant_random)
         puck = self._draw_puck()
         if state is None:
             self.simulation.reset(*puck)
         else:
             self._restore(np.asarray(state, dtype=np.float64))
-        for perception, random in zip(self._perceptions, self._perception_randoms, strict=True):
+        for perception, random in zip(self.perceptions, self._perception_randoms, strict=True):
             perception.reset(random)
         self.step_count, self.verdict, self.succeeded = 0, verdicts.GOING_ON, False
         return self._observe()
@@ -236,7 +241,7 @@ class Environment(Copyable):
         noise = self._no_noise
         if self.disturbances.torque > 0.0:
             shape = (SUBSTEPS, *self._no_noise.shape[1:])
-            noise = self._plant_random.standard_normal(shape) * self._torque_deviation
+            noise = self.plant_random.standard_normal(shape) * self.torque_deviation
         self.simulation.step(self._action, noise, self.step_count)
         verdict = self.task.judge(self._referee, self.simulation.flat)
         self.verdict, self.succeeded = verdict & ~verdicts.SUCCESS, verdict >= verdicts.SUCCESS
@@ -251,7 +256,7 @@ class Environment(Copyable):
         return State(
             self._made_for,
             self.simulation.save(),
-            self._played.copy(),
+            self._played.tobytes(),
             (self.step_count, self.verdict, self.succeeded),
             episode,
             self._save_streams() if self._draws_at_steps else None,
@@ -279,11 +284,13 @@ class Environment(Copyable):
     state = property(get_state, set_state, doc="The present moment; see `get_state` and `set_state`.")
 
     def _save_streams(self) -> tuple[Any, ...]:
-        return (self._plant_random.bit_generator.state, *(perception.save() for perception in self._perceptions))
+        plant, seen = self._plant_stream.save(), [perception.save() for perception in self.perceptions]
+        return plant, seen
 
     def _restore_streams(self, streams: tuple[Any, ...]) -> None:
-        self._plant_random.bit_generator.state = streams[0]
-        for perception, saved in zip(self._perceptions, streams[1:], strict=True):
+        plant, seen = streams
+        self._plant_stream.restore(plant)
+        for perception, saved in zip(self.perceptions, seen, strict=True):
             perception.restore(saved)
 
     def _restore_episode(self, episode: Episode) -> None:
@@ -327,6 +334,22 @@ class Environment(Copyable):
         if self._is_game:
             self.game.serve[0] = self._start_random.choice([HOME_SERVES, AWAY_SERVES])
 
+    def move_into(self, memory: NDArray[Any], referee: NDArray[Any], flat: Array) -> None:
+        """Work from now on in arrays of the caller's, who steps many environments in one call (`airhockey.envs.vector`).
+
+        Args:
+            memory, referee: Of the types of `simulation.memory` and `referee`. Each of shape (1,).
+            flat: See `Simulation.move_into`.
+        """
+        self.simulation.move_into(memory, flat)
+        referee[:], self._referee = self._referee, referee
+        self._make_views()
+
+    @property
+    def referee(self) -> NDArray[Any]:
+        """The record of the rules and of the game. Shape (1,)."""
+        return self._referee
+
     def draw_starts_from(self, random: np.random.RandomState) -> None:
         """Draw all starts from this generator, which others may draw from, too."""
         self._start_random, self._start_is_own, self._episode = random, False, None
@@ -340,7 +363,8 @@ class Environment(Copyable):
         else:
             self._start_random = np.random.RandomState(seed)
         self._start_is_own = True
-        self._plant_random = np.random.default_rng(children[1])
+        self.plant_random = np.random.default_rng(children[1])
+        self._plant_stream = Stream(self.plant_random)
         self._perception_randoms = [np.random.default_rng(child) for child in children[2 : 2 + self.n_players]]
         self.new_game()
 
@@ -364,7 +388,7 @@ class Environment(Copyable):
     def _make_views(self) -> None:
         """Views of what Python and compiled code share."""
         self.game: Game = view(self._referee, Game)
-        self._played = bytes_from(self._referee, Game)
+        self._played = bytes_from(self._referee, Game).data
         self._slots = [self._action[r, : form.rows].reshape(form.shape) for r, form in enumerate(self.formats)]
 
     def _make_slices(self) -> None:
@@ -372,13 +396,13 @@ class Environment(Copyable):
         readings = self.simulation.readings
         base, width = readings.base.size, readings.base.shape[1]
         self._base = slice(base)
-        self._observations = slice(base, base + self.n_players * width)
+        self.observation_slice = slice(base, base + self.n_players * width)
         count = readings.constraints.shape[1]
         self._constraints = [
             {name: slice(first + part.start, first + part.stop) for name, part in self.constraint_slices.items()}
             for first in (2 * base, 2 * base + count)[: self.n_players]
         ]
-        self._judged = slice(2 * base, 2 * base + self.n_players * count)
+        self.constraints_slice = slice(2 * base, 2 * base + self.n_players * count)
         self._jerk = slice(2 * base + readings.constraints.size, self.simulation.flat.size)
 
     def _take(self, action: Any) -> None:
@@ -400,9 +424,9 @@ class Environment(Copyable):
 
     def _observe(self) -> Array:
         if not self._blurred:
-            return self.simulation.flat[self._observations].copy()
+            return self.simulation.flat[self.observation_slice].copy()
         true = self.simulation.readings.observation
-        return np.concatenate([see.observe(row) for see, row in zip(self._perceptions, true, strict=False)])
+        return np.concatenate([see.observe(row) for see, row in zip(self.perceptions, true, strict=False)])
 
     def _info(self) -> dict[str, Any]:
         flat = self.simulation.flat

@@ -34,7 +34,7 @@ class SimulationState(NamedTuple):
     """A moment of a simulation: the physics, what controllers and opponent remember, and the latest readings."""
 
     physics: PhysicsState
-    memory: NDArray[np.uint8]
+    memory: bytes
     flat: Array
 
 
@@ -147,9 +147,10 @@ class Simulation(Copyable):
         if code == BAD_ACTION:
             self.flat = before
         if code != DONE:
-            self._complain(code, action, step)
+            self.complain(code, action, step)
 
-    def _complain(self, code: int, action: Array, step: int) -> None:
+    def complain(self, code: int, action: Array, step: int) -> None:
+        """Raise what a code of `control_step` other than `DONE` stands for; see `step`."""
         if code == BAD_ACTION:
             raise ActionError(f"step {step}: the action holds values that are not finite; all must be numbers")
         self.flat = np.full(self._size, np.nan)
@@ -165,7 +166,7 @@ class Simulation(Copyable):
 
     def save(self) -> SimulationState:
         """All that the next steps depend on."""
-        return SimulationState(self._physics.save(), self._remembered.copy(), self.flat.copy())
+        return SimulationState(self._physics.save(), self._remembered.tobytes(), self.flat.copy())
 
     def restore(self, state: SimulationState) -> None:
         """Go to a moment that this simulation, or one like it, saved."""
@@ -186,6 +187,22 @@ class Simulation(Copyable):
         self._bind(mujoco.MjData(self.model))
         self._physics.restore(saved)
 
+    def move_into(self, memory: NDArray[Any], flat: Array) -> None:
+        """Work from now on in arrays of the caller's, who may step many simulations in one call.
+
+        Args:
+            memory: Of the type of `memory`. Shape (1,).
+            flat: Shape of `flat`. Written now, and by whoever steps; `step` and `reset` leave a new one behind.
+        """
+        memory[:], self._memory = self._memory, memory
+        flat[:], self.flat = self.flat, flat
+        self._bind(self.data)
+
+    @property
+    def memory(self) -> NDArray[Any]:
+        """The record that compiled code works in. Shape (1,)."""
+        return self._memory
+
     def copy_robot_data(self) -> Any:
         """The robot-only model's data, copied, for the same model."""
         data = mujoco.MjData(self.robot_model)
@@ -205,7 +222,7 @@ class Simulation(Copyable):
         arrays = {"ctrl": data.ctrl, "qpos": data.qpos, "qvel": data.qvel, "xpos": data.xpos}
         known = addresses | view(self._memory, Geometry)._asdict() | arrays
         self._plant = Plant(**{name: known[name] for name in Plant._fields})
-        self._remembered = bytes_from(self._memory, Controller)  # what comes before is the same at all times
+        self._remembered = bytes_from(self._memory, Controller).data  # what comes before is the same at all times
 
     def _geometry(self, data: Any) -> Geometry:
         model, robot = self.model, self.robot

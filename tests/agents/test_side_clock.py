@@ -47,7 +47,7 @@ def test_in_a_hurry_the_thesis_player_hits_wherever_the_mallet_fits() -> None:
 def test_in_a_hurry_the_planner_shoots_past_no_one_too() -> None:
     """A keeper who will stop whatever comes is no reason to keep the puck for longer than the rules allow."""
     workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0)
-    parameters, env_info = smash_parameters(IIWA, in_game=True), {"dt": DT, "env_name": "tournament"}
+    parameters, env_info = smash_parameters(IIWA, in_game=True), {"dt": DT, "env_name": "tournament", "n_agents": 2}
     opponent = OpponentTrack(env_info)
     for step in range(5):
         opponent.update(np.array([0.86, 0.0]), step)

@@ -1,6 +1,8 @@
 """Training skills: the same run for the same seed, through a kill and --resume; OAC beside SAC; constraints on the way."""
 
+import copy
 import csv
+import pickle
 import warnings
 
 import msgspec
@@ -78,7 +80,7 @@ def test_a_defence_is_rewarded_as_the_thesis_says_and_shaped():
         before = env._now
         _, reward, over, _, info = env.step(np.zeros(2))
         total += reward - env.shaping(before, env._now)
-    speed = min(np.hypot(*env._now.puck[2:4]), 2.0)
+    speed = min(np.hypot(*env._now.puck.state[2:4]), 2.0)
     assert total == pytest.approx((10.0 if info["success"] else -1.0) - 2.0 * speed, abs=1e-6)
 
 
@@ -238,3 +240,18 @@ def test_other_software_cannot_go_on_with_a_run(finished):
             SkillFolder.resume(path)
     finally:
         (path / "train.json").write_text(manifest)
+
+
+@pytest.mark.parametrize("way", [copy.copy, copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])
+def test_a_copied_environment_of_a_skill_is_one_of_its_own(way):
+    env = DefendEnv("3dof", "server")
+    env.reset(seed=2)
+    env.step(np.array([0.3, -0.2]))
+    twin = way(env)
+
+    def played(one):
+        steps = [one.step(np.array([0.5, 0.1 * k])) for k in range(4)]
+        return [(seen.tobytes(), reward) for seen, reward, *_ in steps]
+
+    expected = played(twin)
+    assert played(env) == expected

@@ -4,13 +4,13 @@
 compiled code.
 """
 
-from math import cos, sin
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.compiling import compiled
+from airhockey.envs.compiled import forward_kinematics
 from airhockey.envs.specs import RobotSpec
 
 Array = NDArray[np.float64]
@@ -83,18 +83,8 @@ def task_coordinates(chain: Chain, q: Array) -> tuple[Array, Array]:
         In [m], shape (r,); in [m]/[rad], shape (r, n), with r = `chain.rows`.
     """
     n = q.size
-    origins, axes = np.empty((n + 1, 3)), np.empty((n, 3))
-    turned, position = np.eye(3), np.zeros(3)
-    for i in range(n):
-        position = position + turned @ chain.offset[i]
-        turned = turned @ chain.rotation[i]
-        origins[i] = position
-        axes[i] = turned[:, 2]
-        c, s = cos(q[i]), sin(q[i])
-        for k in range(3):
-            x, y = turned[k, 0], turned[k, 1]
-            turned[k, 0], turned[k, 1] = c * x + s * y, c * y - s * x
-    origins[n] = position + turned @ chain.tip
+    origins, axes = np.empty((n + 1, 3)), np.empty((n + 2, 3))
+    forward_kinematics(chain, q, origins, axes)
     values, rows = np.empty(chain.rows), np.zeros((chain.rows, n))
     for row in range(chain.rows):
         point = n if row <= Z else (_WRIST_LINK if row == WRIST else _ELBOW_LINK)

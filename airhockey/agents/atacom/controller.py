@@ -14,6 +14,7 @@ from airhockey.agents.atacom.limits import Limits, limits_of
 from airhockey.agents.atacom.parameters import AtacomParameters, atacom_parameters
 from airhockey.agents.atacom.tangent import constraint_rows, tangent_control
 from airhockey.agents.compiling import compiled
+from airhockey.agents.small_matrices import product
 from airhockey.envs.specs import RobotSpec
 
 Array = NDArray[np.float64]
@@ -102,7 +103,7 @@ def integrate(model: Model, action: Array, q: Array, velocity: Array, dt: float,
     for _ in range(substeps):
         values, rows = task_coordinates(chain, q)
         ahead = task_coordinates(chain, q + _NUDGE * velocity)[1]
-        drift = (ahead - rows) @ velocity / _NUDGE
+        drift = product(ahead - rows, velocity) / _NUDGE
         if action.size == 2:
             wanted = action_of_tip(action, gains, TaskMotion(values, rows, drift), q, velocity)
         else:

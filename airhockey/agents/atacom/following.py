@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from airhockey.agents.atacom.chain import TaskMotion, Z
 from airhockey.agents.atacom.parameters import AtacomParameters
 from airhockey.agents.compiling import compiled
+from airhockey.agents.small_matrices import factor, product, solve_backward, solve_forward
 from airhockey.envs.specs import RobotSpec
 
 Array = NDArray[np.float64]
@@ -78,7 +79,7 @@ def action_of_tip(wanted: Array, gains: Gains, task: TaskMotion, q: Array, veloc
     """
     values, rows, drift = task
     m = 3 if values.size > 2 else 2
-    present = rows[:m] @ velocity
+    present = product(rows[:m], velocity)
     asked = np.empty(m)
     asked[:2] = (gains.speed * wanted - present[:2]) / gains.time
     asked[:2] *= min(1.0, gains.acceleration / max(hypot(asked[0], asked[1]), 1e-9))
@@ -86,8 +87,17 @@ def action_of_tip(wanted: Array, gains: Gains, task: TaskMotion, q: Array, veloc
         asked[2] = gains.height_gain * (gains.height - values[Z]) - 2.0 * sqrt(gains.height_gain) * present[2]
     free = gains.posture_gain * (gains.posture - q) - 2.0 * sqrt(gains.posture_gain) * velocity
     scaled = rows[:m] * gains.joint_acceleration  # per unit of action
-    gram = scaled @ scaled.T + _DAMPING * np.eye(m)
-    rest = asked - drift[:m] - rows[:m] @ free
-    action = free / gains.joint_acceleration + scaled.T @ np.linalg.solve(gram, rest)
+    gram = _DAMPING * np.eye(m)
+    for i in range(m):
+        for k in range(m):
+            for j in range(q.size):
+                gram[i, k] += scaled[i, j] * scaled[k, j]
+    rest = asked - drift[:m] - product(rows[:m], free)
+    factor(gram)
+    solve_forward(gram, rest)
+    solve_backward(gram, rest)
+    action = free / gains.joint_acceleration
+    for i in range(m):
+        action += scaled[i] * rest[i]
     action /= max(1.0, np.max(np.abs(action)))
     return action

@@ -26,7 +26,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.atacom.limits import Limits
-from airhockey.agents.compiling import compiled
+from airhockey.agents.compiling import compiled, in_place
+from airhockey.agents.small_matrices import factor, solve_backward, solve_forward
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -111,7 +112,8 @@ def tangent_control(action: Array, b: Array, jacobian: Array, a: Array) -> Array
     """
     n = action.size
     every = np.ones(b.size, dtype=np.bool_)
-    tangent = np.linalg.solve(_gram(every, jacobian, a), action)
+    tangent = action.copy()
+    _solve(_gram(every, jacobian, a), tangent)
     control, room = compensation(b, jacobian, a), 1.0
     for j in range(n):
         control[j] = min(max(control[j], -1.0), 1.0)
@@ -130,16 +132,30 @@ def compensation(b: Array, jacobian: Array, a: Array) -> Array:
     counts = b > 0.0
     control = np.zeros(jacobian.shape[1])
     for _ in range(_ROUNDS):
-        right = np.zeros(control.size)
+        control[:] = 0.0
         for i in range(b.size):
             if counts[i]:
-                right -= jacobian[i] * (b[i] / (a[i] * a[i]))
-        control[:] = np.linalg.solve(_gram(counts, jacobian, a), right)
-        next_counts = jacobian @ control + b > 0.0
-        if np.all(next_counts == counts):
+                for j in range(control.size):
+                    control[j] -= jacobian[i, j] * (b[i] / (a[i] * a[i]))
+        _solve(_gram(counts, jacobian, a), control)
+        same = True
+        for i in range(b.size):
+            rate = b[i]
+            for j in range(control.size):
+                rate += jacobian[i, j] * control[j]
+            same = same and counts[i] == (rate > 0.0)
+            counts[i] = rate > 0.0
+        if same:
             break
-        counts = next_counts
     return control
+
+
+@in_place
+def _solve(matrix: Array, right: Array) -> None:
+    """Replace a right side by matrix⁻¹ times it, and a positive definite matrix by its factor. Shapes (n, n), (n,)."""
+    factor(matrix)
+    solve_forward(matrix, right)
+    solve_backward(matrix, right)
 
 
 @compiled

@@ -63,7 +63,7 @@ class ShotPlanner:
             time_left: Until the episode ends, in [s].
             kind: Of shot.
         """
-        if kind is not self._kind:
+        if kind != self._kind:
             self.reset()
             self._kind = kind
         p = self._parameters
@@ -81,7 +81,7 @@ class ShotPlanner:
             *kind[1:], self._model,
         )  # fmt: skip
         self._tried += count
-        least = 0.0 if kind is ANY else self._least
+        least = 0.0 if kind == ANY else self._least
         return self._best if self._best.value > least else None
 
 

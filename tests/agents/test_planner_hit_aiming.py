@@ -186,7 +186,7 @@ def test_a_swing_is_recognised_and_continued(rate: float) -> None:
 
 
 def test_before_it_is_seen_for_long_the_figure_of_the_challenge_is_expected() -> None:
-    track = OpponentTrack({"dt": 0.02, "env_name": "7dof-hit"})
+    track = OpponentTrack({"dt": 0.02, "env_name": "7dof-hit", "n_agents": 2})
     track.update(np.array([0.86, 0.0]), 0)
     assert track.predict(np.array([0.5]))[0] == pytest.approx(
         [0.86 + 0.05 * math.sin(3.0), 0.16 * math.sin(1.5)], abs=0.01

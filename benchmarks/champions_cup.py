@@ -10,8 +10,10 @@ up, with the 95 % interval of Student's t over the games; penalties and computat
 
 import argparse
 from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
 from itertools import combinations, product
 from math import sqrt
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -132,6 +134,7 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=WHOLE)
     parser.add_argument("--disturbances", nargs="+", default=["ideal", "server"])
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--jobs", type=int, default=1, help="games at a time")
     parser.add_argument("--out", type=Path, help="also write the table to this page, with how it was made")
     options = parser.parse_args()
     pairs = (
@@ -142,14 +145,26 @@ def main() -> None:
         "|---" * (3 + len(COLUMNS)) + "|",
     ]
     print("\n".join(lines))
-    for pair, disturbances in product(pairs, options.disturbances):
-        rows = [play(pair, options.steps, disturbances, options.seed, number) for number in range(options.games)]
-        lines.append(
-            f"| {label_of(pair[0])} | {label_of(pair[1])} | {disturbances} | " + " | ".join(summary(rows)) + " |"
-        )
-        print(lines[-1], flush=True)
-        if options.out is not None:
-            options.out.write_text(page(lines, options))
+    with ProcessPoolExecutor(options.jobs, get_context("spawn")) as pool:
+        table = [
+            (
+                pair,
+                disturbances,
+                [
+                    pool.submit(play, pair, options.steps, disturbances, options.seed, number)
+                    for number in range(options.games)
+                ],
+            )
+            for pair, disturbances in product(pairs, options.disturbances)
+        ]
+        for pair, disturbances, games in table:
+            rows = [game.result() for game in games]
+            lines.append(
+                f"| {label_of(pair[0])} | {label_of(pair[1])} | {disturbances} | " + " | ".join(summary(rows)) + " |"
+            )
+            print(lines[-1], flush=True)
+            if options.out is not None:
+                options.out.write_text(page(lines, options))
 
 
 if __name__ == "__main__":

@@ -129,7 +129,7 @@ def judge(seen: Array, attempt: Attempt, tip: Array, keeper: Keeper, pace: float
         return nothing  # before the flight, which costs most
     goal, gap, length, passing = fly(_struck(puck, normal, speed, model), keeper.places, wait / FLIGHT_STEP, model)
     turns = 1.0 if rims % 2 == 0 else -1.0  # in an odd number of mirrors, left and right are swapped
-    for _ in range(CORRECTIONS * rims):
+    for _ in range(CORRECTIONS if rims > 0 else 0):
         if not arrives(goal):
             return nothing
         target += turns * (aim - goal) / model.slope**rims

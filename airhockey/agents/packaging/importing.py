@@ -118,7 +118,22 @@ def _forget(checkout: Checkout) -> None:
     """Modules of this submission are no longer found."""
     folders = {*map(str, checkout.import_path), _known_to_children(checkout.package)}
     sys.path[:] = [entry for entry in sys.path if entry not in folders]
-    for name, module in list(sys.modules.items()):
-        file = getattr(module, "__file__", None)
-        if name == PACKAGE or (isinstance(file, str) and Path(file).is_relative_to(checkout.root)):
-            del sys.modules[name]
+    gone = [
+        name
+        for name, module in list(sys.modules.items())
+        if name.partition(".")[0] == PACKAGE or any(place.is_relative_to(checkout.root) for place in _places(module))
+    ]
+    for name in gone:
+        del sys.modules[name]
+
+
+def _places(module: ModuleType | None) -> list[Path]:
+    """The file of a module, or the folders of a package without `__init__.py`."""
+    file = getattr(module, "__file__", None)
+    if isinstance(file, str):
+        return [Path(file)]
+    spec = getattr(module, "__spec__", None)
+    try:
+        return [Path(folder) for folder in (getattr(spec, "submodule_search_locations", None) or ())]
+    except KeyError:  # the package around it is gone
+        return []

@@ -11,11 +11,11 @@ import rich_click as click
 from airhockey import __version__
 from airhockey.commands import HELP_PAGE
 from airhockey.commands._streams import be_patient, leave, silence
-from airhockey.errors import AirHockeyError
-from airhockey.inputs.names import shown
+from airhockey.errors import AirHockeyError, EnvironmentFault, SimulationError
+from airhockey.inputs.names import one_line
 
-USAGE_ERROR = 2
-_LONGEST = 4000  # characters of a message
+USAGE_ERROR, NOBODYS_FAULT = 2, 4
+_BROKEN = "the installation is broken, which is no agent's fault"
 
 
 class LazyGroup(click.RichGroup):
@@ -28,6 +28,7 @@ class LazyGroup(click.RichGroup):
         "watch",
         "replay",
         "video",
+        "failures",
         "report",
         "leaderboard",
         "train",
@@ -37,6 +38,7 @@ class LazyGroup(click.RichGroup):
         "validate",
         "package",
         "serve-agent",
+        "doctor",
     )
 
     def list_commands(self, ctx: Any) -> list[str]:
@@ -63,6 +65,9 @@ def hockey() -> None:
     hockey evaluate --task prepare            the default agent, 1000 episodes
     hockey evaluate --task all --agent hold   every task of the 7-DoF robot
     hockey agents                             who there is to play
+
+    Exit statuses: 0, done; 2, bad input; 3, an agent failed; 4, the environment, its disturbances, a training or this
+    machine failed, and no agent: nothing counts against anybody, and the run can go on; 130, interrupted.
     """
 
 
@@ -75,15 +80,24 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except click.ClickException as error:
         command = getattr(getattr(error, "ctx", None), "command_path", "hockey")
         status = complain(f"{error.format_message()} (see {command} --help)")
+    except (EnvironmentFault, SimulationError) as error:
+        status = complain(str(error), NOBODYS_FAULT)
     except AirHockeyError as error:
         status = complain(str(error))
+    except ImportError as error:
+        status = complain(f"{_BROKEN}: {error}", NOBODYS_FAULT)
+    except MemoryError:
+        status = complain("this machine has no memory left, which is no agent's fault", NOBODYS_FAULT)
     except click.Abort:
         status = 130
     except BrokenPipeError:
         silence()
         status = 1
     except OSError as error:
-        status = complain(f"{error.filename or 'the standard output'}: {error.strerror or error}")
+        if error.errno is None:  # the operating system names its errors; a library that cannot be loaded does not
+            status = complain(f"{_BROKEN}: {error}", NOBODYS_FAULT)
+        else:
+            status = complain(f"{error.filename or 'the standard output'}: {error.strerror or error}")
     lost = leave()
     if lost is not None:
         complain(f"the standard output could not be written ({lost}); what was played is stored")
@@ -91,10 +105,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     sys.exit(status)
 
 
-def complain(message: str) -> int:
-    """Say in one line what is wrong; returns the exit status of bad input."""
-    click.echo(f"hockey: {shown(' '.join(message.split()), _LONGEST)}", err=True)
-    return USAGE_ERROR
+def complain(message: str, status: int = USAGE_ERROR) -> int:
+    """Say in one line what is wrong; returns the exit status, that of bad input where none is given."""
+    click.echo(f"hockey: {one_line(message)}", err=True)
+    return status
 
 
 if __name__ == "__main__":

@@ -24,6 +24,10 @@ class SimulationError(AirHockeyError, RuntimeError):
     """The physics engine warned (diverged, ran out of memory …); the message names the control step."""
 
 
+class EnvironmentFault(AirHockeyError, RuntimeError):
+    """The environment, its disturbances or this machine failed: no agent has a part in it (exit status 4)."""
+
+
 class MissingDependencyError(AirHockeyError, ImportError):
     """An optional package is not installed; the message gives the command that installs it."""
 

@@ -21,7 +21,7 @@ from airhockey.evaluator.engines.cluster import Cluster
 from airhockey.evaluator.engines.engine import Engine, InProcess
 from airhockey.evaluator.engines.processes import Processes
 from airhockey.evaluator.entries import Entry
-from airhockey.evaluator.judging.standings import write_standings
+from airhockey.evaluator.judging.standings import standings, write_standings
 from airhockey.evaluator.play.game import Game, GamePlayer
 from airhockey.evaluator.runs.game_records import GameJob, GameOptions, GameRecord
 from airhockey.evaluator.schedule import TournamentOptions, schedule
@@ -127,7 +127,7 @@ def bookkeeping(options: argparse.Namespace) -> None:
             kept = seconds(lambda: folder.add(Game(record, film)))
             size = sum(file.stat().st_size for file in (folder.path / "films").iterdir()) / 1e6
             records = [msgspec.structs.replace(template.record, job=one) for one in jobs]
-            last = seconds(lambda: write_standings(folder.path, names, jobs, records))
+            last = seconds(lambda: write_standings(folder.path, standings(names, jobs, records)))
     with tempfile.TemporaryDirectory() as place:
         folder = begin_tournament(plan, Path(place) / "run")
         with folder:

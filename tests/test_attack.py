@@ -1,6 +1,5 @@
-"""A sample of the attacks of `scripts/attack`, one of each kind that takes seconds."""
+"""A sample of the attacks of `scripts/attack`, some of each kind; `python scripts/attack` tries them all."""
 
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -9,7 +8,6 @@ import pytest
 
 from airhockey.evaluator.isolation.sandbox import why_no_sandbox
 
-pytestmark = pytest.mark.skipif(os.environ.get("ATTACK") != "1", reason="it takes minutes: ATTACK=1 asks for it")
 ATTACK = Path(__file__).parents[1] / "scripts" / "attack"
 
 
@@ -18,6 +16,6 @@ def test_what_attackers_try_holds(kind: str) -> None:
     if kind in ("escapes", "cheats") and why_no_sandbox() is not None:
         pytest.skip(str(why_no_sandbox()))
     command = [sys.executable, str(ATTACK), "--sample", "--only", kind]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=1500)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=900)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "| **all** |" in done.stdout
+    assert "| **all** | 0 |" not in done.stdout and "| **all** |" in done.stdout

@@ -10,7 +10,9 @@ from airhockey.errors import ConfigurationError
 
 PLANAR_TASKS = ("3dof-hit", "3dof-defend")
 IIWA_TASKS = ("7dof-hit", "7dof-defend", "7dof-prepare")
-EVERY_ENVIRONMENT = (*PLANAR_TASKS, *IIWA_TASKS, "tournament")
+TASKS_OF_2025 = ("hit", "hit_single", "defend", "prepare")
+EVERY_ENVIRONMENT = (*PLANAR_TASKS, *IIWA_TASKS, *TASKS_OF_2025, "tournament")
+"""The names of all editions."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from typing import Any
 
 from airhockey.agents.packaging.checkout import BUILDER, CONFIG, PACKAGE, find_checkout
 from airhockey.agents.packaging.importing import at_the_root, explaining, load_builder
-from airhockey.agents.packaging.metadata import interpolation_order, read_metadata, read_yaml
+from airhockey.agents.packaging.metadata import interpolation_order, read_metadata, read_yaml_if_there
 from airhockey.errors import ConfigurationError
 
 __all__ = ["BUILDER", "CONFIG", "EVALUATION_KEYS", "PACKAGE", "build_submission", "is_submission", "submission_config"]
@@ -48,8 +48,7 @@ def submission_config(path: Path) -> dict[str, Any]:
     Raises:
         ConfigurationError: The file is not YAML, or not a mapping with text keys.
     """
-    file = submission_folder(path) / CONFIG
-    return read_yaml(file) if file.is_file() else {}
+    return read_yaml_if_there(submission_folder(path) / CONFIG) or {}
 
 
 def wanted_order(path: Path, default: int | None = 3) -> int | None:

@@ -16,7 +16,14 @@ Option = Callable[[Command], Command]
 robot = click.option(
     "--robot", type=click.Choice(["7dof", "3dof"]), default="7dof", show_default=True, help="Who plays it."
 )
-env = click.option("--env", metavar="NAME", help="Task and robot in one name, as in 7dof-prepare.")
+env = click.option(
+    "--env", metavar="NAME", help="Task and robot in one name, as in 7dof-prepare; in the edition of 2025 hit_single."
+)
+edition = click.option(
+    "--edition",
+    type=click.Choice(["2023", "2025"]),
+    help="The year whose rules apply.  [default: what --env or the submission was made for, else 2023]",
+)
 
 
 class Seed(click.ParamType):  # type: ignore[type-arg,unused-ignore]  # generic since click 8.4
@@ -93,6 +100,26 @@ python = click.option(
     metavar="PATH",
     help="Another interpreter for a submission's process: Python 3.8 to 3.14 with NumPy and what the agent needs.",
 )
+settings = click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="control.NAME=VALUE",
+    help="Change our players' controller, as in control.solver=osqp or control.kinematics=pinocchio.",
+)
+pythons = click.option(
+    "--python",
+    multiple=True,
+    metavar="[PLAYER:]PATH",
+    help="Another interpreter for the processes of all submissions, or of one player, as in home:PATH; in a tournament its name.",
+)
+player_settings = click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="[PLAYER:]control.NAME=VALUE",
+    help="Change the controller of our players, or of one, as in away:control.solver=osqp.",
+)
 out = click.option("--out", metavar="FOLDER", help="Run folder.  [default: a new one under runs/]")
 resume = click.option("--resume", is_flag=True, help="Continue the run in --out; its options need not be repeated.")
 as_json = click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object, and nothing else.")
@@ -124,7 +151,22 @@ ISOLATION = (isolate, patience)
 PLAY = (*ISOLATION, real_time)
 VIEWER = (host, port, no_browser, window)
 RUN = (out, resume, quiet)
-GAMES = (game_steps, seed, agent_seed, jobs, cluster, disturbances, clock, variant, *PLAY, *RUN, as_json)
+GAMES = (
+    edition,
+    game_steps,
+    seed,
+    agent_seed,
+    jobs,
+    cluster,
+    disturbances,
+    clock,
+    variant,
+    *PLAY,
+    pythons,
+    player_settings,
+    *RUN,
+    as_json,
+)
 
 
 def options(*added: Option) -> Option:

@@ -16,16 +16,19 @@ import msgspec
 
 from airhockey.agents import AGENTS
 from airhockey.envs.disturbances import available
+from airhockey.envs.editions import DEFAULT, edition_of_names
+from airhockey.errors import ConfigurationError, EnvironmentFault, SimulationError
 from airhockey.evaluator.engines.cluster import engine_of
 from airhockey.evaluator.engines.engine import Engine
-from airhockey.evaluator.isolation.modes import choose
+from airhockey.evaluator.isolation.modes import REMOTE, choose
 from airhockey.evaluator.runs.folder import RunFolder
 from airhockey.evaluator.runs.game_records import GameOptions
 from airhockey.evaluator.runs.manifest import has_option, option_of
-from airhockey.inputs.names import shown
+from airhockey.inputs.names import one_line, shown
 from airhockey.learning.diverged import DivergedError
 
-AGENT_FAILED, DIVERGED, INTERRUPTED = 3, 4, 130
+AGENT_FAILED, NOBODYS_FAULT, INTERRUPTED = 3, 4, 130
+"""Exit statuses: an agent failed; environment, profile, machine or a training did, and no agent; the user stopped it."""
 RUNS = Path("runs")
 MOST_NOTES = 5
 
@@ -107,17 +110,23 @@ class Session:
             with stdout_for_the_result(), progress as shown:
                 result = play(shown)
         except KeyboardInterrupt:
-            after = f" after {len(folder.records)} of {whole}" if whole else ""
-            click.echo(
-                f"hockey: interrupted{after}; continue with:\n"
-                f"  hockey {self.command} --resume --out {shlex.quote(str(folder.path))}",
-                err=True,
-            )
+            self._say_how_to_go_on(folder, "interrupted", whole)
             return INTERRUPTED
+        except (EnvironmentFault, SimulationError) as error:
+            self._say_how_to_go_on(folder, f"{one_line(str(error))}; stopped", whole)
+            return NOBODYS_FAULT
         except DivergedError as error:
             click.echo(f"hockey: the training diverged: {error}; the run keeps what was good before", err=True)
-            return DIVERGED
+            return NOBODYS_FAULT
         return show(result)
+
+    def _say_how_to_go_on(self, folder: Folder, why: str, whole: str) -> None:
+        after = f" after {len(folder.records)} of {whole}" if whole else ""
+        click.echo(
+            f"hockey: {why}{after}; continue with:\n"
+            f"  hockey {self.command} --resume --out {shlex.quote(str(folder.path))}",
+            err=True,
+        )
 
     def print(self, folder: Folder, result: msgspec.Struct, table: Callable[[], None]) -> None:
         """Print a result as JSON, or as a table that says itself where the result is stored."""
@@ -156,6 +165,39 @@ def agent_seed_of(given: str | None, agents: Iterable[str]) -> str | None:
     return secrets.token_hex(16)
 
 
+def edition_of(given: Mapping[str, Any], agents: Iterable[str], names: Iterable[str] = ()) -> str:
+    """The year whose rules apply: as typed, or as the environments or the submissions say; the user is told where it is theirs.
+
+    Args:
+        given: The options.
+        agents: Who plays.
+        names: Of environments that were typed.
+
+    Raises:
+        ConfigurationError: Submissions of several editions are to play each other.
+    """
+    if given.get("edition") is not None or given.get("resume"):
+        return given.get("edition") or DEFAULT
+    from airhockey.agents.packaging.edition import edition_of_entry
+    from airhockey.agents.submission import is_submission
+
+    by_name = edition_of_names(names)
+    if by_name is not None:
+        return by_name
+    entries = [agent for agent in dict.fromkeys(agents) if not agent.startswith(REMOTE) and is_submission(agent)]
+    years = {agent: year for agent in entries if (year := edition_of_entry(Path(agent))) is not None}
+    if len(set(years.values())) > 1:
+        made_for = ", ".join(f"{Path(agent).name} for {year}" for agent, year in years.items())
+        raise ConfigurationError(f"submissions of several editions ({made_for}): say whose rules apply, with --edition")
+    for agent, year in years.items():
+        if year != DEFAULT:
+            click.echo(
+                f"hockey: {agent!r} was made for the edition of {year}, whose rules apply (--edition chooses)", err=True
+            )
+            return year
+    return DEFAULT
+
+
 def python_of(given: str | None) -> str | None:
     """The full path of an interpreter that can run agents; raises `ConfigurationError` for one that cannot."""
     from airhockey.evaluator.isolation.interpreters import interpreter
@@ -163,16 +205,22 @@ def python_of(given: str | None) -> str | None:
     return None if given is None else interpreter(given).path
 
 
-def real_time_of(given: Mapping[str, Any], agents: Iterable[str], environment: str) -> float:
-    """The pace asked for, or the one that the agents need; the user is told where it is theirs."""
+def real_time_of(given: Mapping[str, Any], agents: Mapping[str, str | None], environment: str, edition: str) -> float:
+    """The pace asked for, or the one that the agents need; the user is told where it is theirs.
+
+    Args:
+        given: The options.
+        agents: Who plays -> another interpreter for its process, or None.
+        environment, edition: Where.
+    """
     if given.get("real_time") is not None:
         return float(given["real_time"])
     if given.get("resume"):
         return 0.0  # the run keeps its own
     from airhockey.evaluator.pacing import pace_for
 
-    for agent in dict.fromkeys(agents):
-        if pace_for(agent, environment, given["isolate"], given["patience"], given.get("python")):
+    for agent, python in agents.items():
+        if pace_for(agent, environment, given["isolate"], given["patience"], python, edition):
             click.echo(
                 f"hockey: {agent!r} thinks between its steps, in threads or processes: they are paced as on the robot "
                 "(--real-time 0 plays as fast as possible)",
@@ -182,8 +230,9 @@ def real_time_of(given: Mapping[str, Any], agents: Iterable[str], environment: s
     return 0.0
 
 
-def game_options_of(given: Mapping[str, Any], agents: Iterable[str] = ()) -> GameOptions:
-    """How games are played, from the options that are there and by what the agents need."""
+def game_options_of(given: Mapping[str, Any], agents: Mapping[str, str | None]) -> GameOptions:
+    """How games are played, from the options that are there and by what the agents need; `agents` as in `real_time_of`."""
+    edition = edition_of(given, agents)
     return GameOptions(
         steps=given["steps"],
         disturbances=disturbances_of(given),
@@ -191,7 +240,8 @@ def game_options_of(given: Mapping[str, Any], agents: Iterable[str] = ()) -> Gam
         variant=given.get("variant", "package"),
         isolate=given["isolate"] or "auto",
         patience=given["patience"],
-        real_time=real_time_of(given, agents, "tournament"),
+        edition=edition,
+        real_time=real_time_of(given, agents, "tournament", edition),
         agent_seed=agent_seed_of(given.get("agent_seed"), agents),
     )
 

@@ -1,5 +1,6 @@
 """Results as tables for people."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from rich import box
@@ -8,6 +9,7 @@ from rich.table import Table
 
 from airhockey.envs.editions import edition
 from airhockey.evaluator import RunResult, TaskResult
+from airhockey.evaluator.analysis.failures import causes_of
 from airhockey.evaluator.evaluation import failure_reasons
 from airhockey.evaluator.judging.standings import Standings
 from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES, judge, wilson_interval
@@ -15,6 +17,7 @@ from airhockey.evaluator.match import GameResult, MatchFolder, MatchResult
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 from airhockey.evaluator.runs.folder import RunFolder
 from airhockey.evaluator.runs.game_records import Event
+from airhockey.inputs.names import shown
 
 _WIDTH = 130
 _FEW = 8  # events of a game that are shown when several games were played
@@ -34,16 +37,20 @@ def print_result(result: TaskResult | RunResult, folder: EpisodeFolder) -> None:
     if isinstance(result, RunResult):
         score = "" if result.score is None else f", {result.phase} score {result.score:.3f}"
         console.print(f"overall: {result.deployability}{score}")
+    for isolation in dict.fromkeys(task.isolation for task in tasks if task.isolation not in ("", "none")):
+        console.print(f"isolation: {isolation}", markup=False)
     for reason, episodes in failure_reasons(folder.path):
         console.print(f"agent failed {episodes} episode{'s' if episodes > 1 else ''}: {reason}", markup=False)
     _print_origin(console, folder)
+    if any(causes_of(record) for record in folder.records):
+        console.print(f"what went wrong: hockey failures {folder.path}", markup=False, soft_wrap=True)
 
 
 def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
     options = folder.manifest.options
     rules = edition(options.edition)
     verdicts = [judge([record for record in folder.records if record.env == task.env], rules) for task in tasks]
-    title = f"agent {options.agent}, {options.episodes} episodes, disturbances {options.disturbances}"
+    title = f"agent {options.agent}, {options.episodes} episodes, {_conditions(options.edition, options.disturbances)}"
     table = _titled(title)
     table.add_column("")
     for task in tasks:
@@ -63,6 +70,9 @@ def _table(tasks: tuple[TaskResult, ...], folder: EpisodeFolder) -> Table:
     for name in ("mean", "p99", "max"):
         label = f"draw_action {name}, {options.clock} clock"
         table.add_row(label, *(f"{getattr(task.computation_time, name) * 1e3:.3f} ms" for task in tasks))
+    table.add_row("steps over 20 ms", *(str(task.computation_time.late) for task in tasks))
+    for name in ("build_agent", "episode_start"):
+        table.add_row(f"longest {name}", *(f"{getattr(task.preparation_time, name):.3f} s" for task in tasks))
     table.add_row("episodes failed by the agent", *(str(task.agent_errors) for task in tasks))
     return table
 
@@ -76,7 +86,10 @@ def print_match(result: MatchResult, folder: MatchFolder) -> None:
     """Print a table per game, its events, and the match as a whole."""
     console = output()
     for number, game in enumerate(result.games, start=1):
-        console.print(_game_table(result, game, number))
+        console.print(_game_table(result, game, number, folder.manifest.options.game.clock))
+        for side, isolation in zip((result.home, result.away), game.isolation, strict=True):
+            if isolation not in ("", "none"):
+                console.print(f"{side} ran in a {isolation}", markup=False, soft_wrap=True)
         for side, failure in zip((result.home, result.away), game.failures, strict=True):
             if failure is not None:
                 console.print(f"{side} failed: {failure}", markup=False, soft_wrap=True)
@@ -85,8 +98,8 @@ def print_match(result: MatchResult, folder: MatchFolder) -> None:
     _print_origin(console, folder)
 
 
-def _game_table(result: MatchResult, game: GameResult, number: int) -> Table:
-    title = f"game {number}, {game.steps} steps, disturbances {result.disturbances}: {_outcome(result, game)}"
+def _game_table(result: MatchResult, game: GameResult, number: int, clock: str) -> Table:
+    title = f"game {number}, {game.steps} steps, {_conditions(result.edition, result.disturbances)}: {_outcome(result, game)}"
     table = _titled(title)
     table.add_column("")
     table.add_column(
@@ -104,8 +117,11 @@ def _game_table(result: MatchResult, game: GameResult, number: int) -> Table:
         table.add_row(f"episodes violating {name}", *(str(counts[name]) for counts in game.violations))
     table.add_row("penalty points", *(f"{points:g}" for points in game.penalty))
     table.add_row("deployability", *game.deployability)
-    table.add_row("steps with a held command", *map(str, game.held))
-    table.add_row("draw_action max", *(f"{seconds * 1e3:.3f} ms" for seconds in game.computation_time_max))
+    for name in ("build_agent", "episode_start"):
+        table.add_row(f"longest {name}", *(f"{getattr(times, name):.3f} s" for times in game.preparation_time))
+    for name, times in (("mean", game.computation_time_mean), ("max", game.computation_time_max)):
+        table.add_row(f"draw_action {name}, {clock} clock", *(f"{seconds * 1e3:.3f} ms" for seconds in times))
+    table.add_row("steps over 20 ms: command held", *map(str, game.held))
     return table
 
 
@@ -132,7 +148,7 @@ def _print_events(console: Console, result: MatchResult, events: tuple[Event, ..
 
 def print_standings(console: Console, table: Standings) -> None:
     """Print the standings of a tournament."""
-    title = f"standings after {table.played} of {table.games} games"
+    title = f"standings after {table.played} of {table.games} games, edition {table.edition}"
     shown = _titled(title)
     for name in (
         "#",
@@ -167,6 +183,11 @@ def print_standings(console: Console, table: Standings) -> None:
     console.print(shown)
 
 
+def _conditions(edition: str, disturbances: str) -> str:
+    """Under which results can be compared."""
+    return f"edition {edition}, disturbances {disturbances}"
+
+
 def _titled(title: str) -> Table:
     return Table(title=title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
 
@@ -175,4 +196,11 @@ def _print_origin(console: Console, folder: RunFolder[Any, Any]) -> None:
     """Where a result comes from, and where it is stored."""
     versions = ", ".join(f"{name} {version}" for name, version in folder.manifest.versions.items())
     console.print(f"seed {folder.manifest.options.seed}, {versions}", soft_wrap=True)
+    print_inputs(console, folder.manifest.inputs)
     console.print(f"stored in {folder.path}", soft_wrap=True, markup=False)
+
+
+def print_inputs(console: Console, inputs: Mapping[str, str]) -> None:
+    """Agents and files of a run, by their content."""
+    for name, digest in inputs.items():
+        console.print(f"{shown(name)}: SHA-256 {digest}", soft_wrap=True, markup=False)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     show_default=True,
     help="What to play.",
 )
-@common.options(common.robot, common.env)
+@common.options(common.robot, common.env, common.edition)
 @click.option(
     "--agent",
     metavar="NAME|PATH|tcp://…",
@@ -33,13 +33,7 @@ if TYPE_CHECKING:
     metavar="NAME|FILE",
     help="Parameters of the rule-based player: tuned, thesis, or a YAML file, as `hockey train pgpe` leaves it.",
 )
-@click.option(
-    "--set",
-    "settings",
-    multiple=True,
-    metavar="control.NAME=VALUE",
-    help="Change our players' controller, as in control.solver=osqp or control.kinematics=pinocchio.",
-)
+@common.options(common.settings)
 @click.option("--episodes", type=click.IntRange(min=1), default=1000, show_default=True, help="Episodes of each task.")
 @common.options(common.seed, common.agent_seed, common.jobs, common.cluster, common.disturbances)
 @click.option(
@@ -62,6 +56,7 @@ def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
     \b
     hockey evaluate --task prepare
     hockey evaluate --task all --disturbances server
+    hockey evaluate --edition 2025 --episodes 100
     hockey evaluate --env 3dof-hit --agent submissions/my_agent --episodes 100 --jobs 1
     hockey evaluate --resume --out runs/7dof-prepare-planner-s0
     """
@@ -98,6 +93,7 @@ def _options(given: dict[str, Any]) -> "Options":
         agent_of,
         agent_seed_of,
         disturbances_of,
+        edition_of,
         from_anywhere,
         python_of,
         real_time_of,
@@ -107,43 +103,51 @@ def _options(given: dict[str, Any]) -> "Options":
 
     default = "planner" if given["parameters"] is None else "thesis"  # the one that reads them
     agent, order = agent_of(given["agent"] or default), given["interpolation_order"]
-    environments = _environments(given)
+    python = python_of(given["python"])
+    edition = edition_of(given, (agent,), () if given["env"] is None else (given["env"],))
+    environments = _environments(given, edition)
     return Options(
         environments=environments,
         agent=agent,
         episodes=given["episodes"],
         seed=given["seed"],
+        edition=edition,
         disturbances=disturbances_of(given),
         interpolation_order="agent" if order is None else "none" if order == "none" else int(order),
         clock=given["clock"],
         isolate=choose(agent, given["isolate"]).mode,
         patience=given["patience"],
-        real_time=real_time_of(given, (agent,), environments[0]),
-        python=python_of(given["python"]),
+        real_time=real_time_of(given, {agent: python}, environments[0], edition),
+        python=python,
         settings=given["settings"],
         agent_seed=agent_seed_of(given["agent_seed"], (agent,)),
         parameters=None if given["parameters"] is None else from_anywhere(given["parameters"]),
     )
 
 
-def _environments(given: dict[str, Any]) -> tuple[str, ...]:
+def _environments(given: dict[str, Any], year: str) -> tuple[str, ...]:
     """The environments of a task and a robot, or the one named."""
     from airhockey.envs.editions import edition
     from airhockey.errors import ConfigurationError
 
+    rules = edition(year)
     if given["env"] is not None:
-        return (given["env"],)
+        return (rules.counterpart(given["env"]),)
     robot, task = given["robot"], given["task"]
-    tasks = tuple(edition().score_weights[robot])
+    tasks = rules.tasks_of(robot)
     if task == "all":
         return tasks
-    if f"{robot}-{task}" not in tasks:
+    name = rules.names.get(f"{robot}-{task}")
+    if name is None:
         raise ConfigurationError(f"there is no task {task!r} for the {robot} robot; its tasks are {', '.join(tasks)}")
-    return (f"{robot}-{task}",)
+    return (name,)
 
 
 def _name(options: "Options", given: dict[str, Any]) -> str:
     """Says what is evaluated."""
     what = options.environments[0] if len(options.environments) == 1 else f"{given['robot']}-all"
+    from airhockey.envs.editions import DEFAULT
+
+    year = [] if options.edition == DEFAULT else [options.edition]
     profile = [] if options.disturbances == "ideal" else [Path(options.disturbances).stem]
-    return "-".join([what, Path(options.agent).name, *profile, f"s{options.seed}"])
+    return "-".join([what, Path(options.agent).name, *year, *profile, f"s{options.seed}"])

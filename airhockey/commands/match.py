@@ -26,19 +26,30 @@ def match(ctx: click.RichContext, /, **given: Any) -> None:
     hockey match thesis hold
     hockey match planner thesis --games 10 --swap-sides --disturbances server
     hockey match thesis submissions/my_agent --steps 3000 --json
+    hockey match planner planner --set away:control.solver=osqp --games 4 --swap-sides
     hockey match --resume --out runs/match-planner-thesis-s0
     """
     typed = common.typed_options(ctx, given)
     if not given["resume"] and given["away"] is None:
         raise click.UsageError("a match takes two players: hockey match A B")
     from airhockey.commands import _live, _tables
+    from airhockey.commands._players import pythons_of, settings_of
     from airhockey.commands._session import AGENT_FAILED, Session, agent_of, game_options_of
     from airhockey.evaluator.match import MatchOptions, MatchResult, begin_match, play_match, resume_match
 
     session = Session("match", given, typed)
     home, away = (agent_of(given[side] or "") for side in ("home", "away"))
     own = {name: given[name] for name in ("games", "seed", "swap_sides")}
-    options = MatchOptions(home=home, away=away, game=game_options_of(given, (home, away)), **own)
+    players = {} if given["away"] is None else {"home": home, "away": away}
+    pythons, settings = pythons_of(given, players), settings_of(given, players)
+    options = MatchOptions(
+        home=home,
+        away=away,
+        python=(pythons.get("home"), pythons.get("away")),
+        settings=(settings.get("home", ()), settings.get("away", ())),
+        game=game_options_of(given, {home: pythons.get("home"), away: pythons.get("away")}),
+        **own,
+    )
     engine = session.engine(given["games"], isolated=True)
     name = f"match-{Path(home).name}-{Path(away).name}-s{options.seed}"
     folder = session.open(options, name, begin_match, resume_match, (home, away))

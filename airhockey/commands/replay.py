@@ -11,6 +11,7 @@ from airhockey.commands import _options as common
 @click.command()
 @click.argument("run", metavar="RUN", type=click.Path(path_type=Path))
 @click.option("--episode", metavar="K", help="Episode or game to begin with.  [default: the first]")
+@click.option("--failed", is_flag=True, help="Only episodes that went wrong.")
 @common.options(*common.VIEWER)
 def replay(**given: Any) -> None:
     """Replay RUN in MuJoCo's viewer: the folder of a run, match or tournament, or an official dataset.pkl.
@@ -21,6 +22,7 @@ def replay(**given: Any) -> None:
 
     \b
     hockey replay runs/7dof-prepare-planner-s0 --episode 17
+    hockey replay runs/7dof-prepare-planner-s0 --failed
     hockey replay runs/match-planner-thesis-s0
     hockey replay runs/tournament-s0 --episode 1/alpha-beta
     hockey replay official/7dof-hit/dataset.pkl
@@ -31,6 +33,7 @@ def replay(**given: Any) -> None:
     from airhockey.viewing.playback import RecordedPlayback
 
     library = open_library(given["run"])
+    library.entries = library.choose(None, given["failed"])
     first = library.position(given["episode"]) if given["episode"] is not None else 0
     say_notes(library.notes, MOST_NOTES)
     show_in_viewer(RecordedPlayback(library.entries, first), given)

@@ -18,6 +18,7 @@ from airhockey.commands import _options as common
     "--port", type=click.IntRange(0, 65535), default=8080, show_default=True, help="Port; 0 for any free one."
 )
 @click.option("--env", default="tournament", show_default=True, metavar="NAME", help="Environment that it will play.")
+@common.options(common.edition)
 @click.option("--agent-id", type=click.IntRange(1, 2), default=1, show_default=True, help="Which robot it plays.")
 @click.option("--games", type=click.IntRange(min=1), help="End after so many connections.  [default: never]")
 @common.options(*common.ISOLATION)
@@ -35,7 +36,7 @@ def serve_agent(ctx: click.RichContext, /, **given: Any) -> None:
     common.typed_options(ctx, given)
     from airhockey import envs
     from airhockey.agents.submission import is_submission, wanted_order
-    from airhockey.commands._session import agent_of, say_what_is_not_protected
+    from airhockey.commands._session import agent_of, edition_of, say_what_is_not_protected
     from airhockey.errors import ConfigurationError
     from airhockey.evaluator.checks import check_agent
     from airhockey.evaluator.isolation.build import build_agent
@@ -45,10 +46,11 @@ def serve_agent(ctx: click.RichContext, /, **given: Any) -> None:
 
     name = given["agent"]
     agent_name = agent_of(name)
+    edition = edition_of(given, (agent_name,), (given["env"],))
     check_agent(agent_name, (given["env"],))
     say_what_is_not_protected((agent_name,), given["isolate"])
     order = wanted_order(Path(agent_name)) if is_submission(agent_name) else 3
-    env = envs.make(given["env"], order)
+    env = envs.make(given["env"], order, edition=edition)
     waiting = listen(given["host"], given["port"])
     with waiting:
         agent = build_agent(

@@ -17,7 +17,11 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("entries", metavar="[NAME=]AGENT…", nargs=-1)
-@click.option("--entries-file", metavar="FILE", help="A YAML file with a list of entries (name, agent, second_agent).")
+@click.option(
+    "--entries-file",
+    metavar="FILE",
+    help="A YAML file with a list of entries (name, agent, second_agent, python, settings).",
+)
 @click.option("--phases", type=click.IntRange(1, 2), default=1, show_default=True, help="Double round robins.")
 @click.option("--replace", metavar="NAME=AGENT", multiple=True, help="Another agent for an entry in phase 2.")
 @click.option("--show", is_flag=True, help="Show the standings of the tournament in --out without playing.")
@@ -58,7 +62,7 @@ def tournament(ctx: click.RichContext, /, **given: Any) -> None:
         entries=entries if given["resume"] else entering.with_replacements(entries, replacements),
         phases=given["phases"],
         seed=given["seed"],
-        game=game_options_of(given, (entry.agent for entry in entries)),
+        game=game_options_of(given, {entry.agent: entry.python for entry in entries}),
     )
     extension = entries, given["phases"] if "phases" in typed else None, replacements
     folder = session.open(
@@ -101,7 +105,9 @@ def _print(standings: "Standings", given: dict[str, Any]) -> int:
     elif given["as_csv"]:
         click.echo(as_csv(standings), nl=False)
     else:
-        _tables.print_standings(_tables.output(), standings)
+        console = _tables.output()
+        _tables.print_standings(console, standings)
+        _tables.print_inputs(console, standings.inputs)
     return 0
 
 
@@ -109,15 +115,22 @@ def _entries(given: dict[str, Any]) -> "tuple[Entry, ...]":
     """The entries that were typed and those of the file, with full paths."""
     import msgspec
 
-    from airhockey.commands._session import agent_of
+    from airhockey.commands._players import pythons_of, settings_of
+    from airhockey.commands._session import agent_of, python_of
     from airhockey.evaluator.entries import entry_of, read_entries
 
     entries = [entry_of(text) for text in given["entries"]]
     if given["entries_file"] is not None:
         entries += read_entries(Path(given["entries_file"]))
+    agents = {entry.name: agent_of(entry.agent) for entry in entries}
+    pythons, settings = pythons_of(given, agents), settings_of(given, agents)
     return tuple(
         msgspec.structs.replace(
-            entry, agent=agent_of(entry.agent), second_agent=entry.second_agent and agent_of(entry.second_agent)
+            entry,
+            agent=agent_of(entry.agent),
+            second_agent=entry.second_agent and agent_of(entry.second_agent),
+            python=pythons[entry.name] or python_of(entry.python),
+            settings=settings[entry.name] or entry.settings,
         )
         for entry in entries
     )

@@ -16,7 +16,7 @@ PROBLEMS = 3
 @click.command()
 @click.argument("path", metavar="DIR|FILE", type=click.Path(path_type=Path))
 @click.option("--steps", type=click.IntRange(min=1), default=50, show_default=True, help="Control steps of every task.")
-@common.options(*common.ISOLATION, common.python)
+@common.options(common.edition, *common.ISOLATION, common.python)
 @common.options(common.as_json)
 @click.pass_context
 def validate(ctx: click.RichContext, /, **given: Any) -> None:
@@ -45,7 +45,8 @@ def validate(ctx: click.RichContext, /, **given: Any) -> None:
     mode = choose(agent, given["isolate"]).mode
     say_what_is_not_protected((agent,), given["isolate"])
     limits = Limits(patience=patience, start=max(patience, Limits.start))
-    ctx.exit(_print(validate(path, mode, limits, given["steps"], python_of(given["python"])), given["as_json"]))
+    verdict = validate(path, mode, limits, given["steps"], python_of(given["python"]), given["edition"])
+    ctx.exit(_print(verdict, given["as_json"]))
 
 
 def _print(verdict: "Verdict", as_json: bool) -> int:

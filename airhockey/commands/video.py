@@ -28,6 +28,7 @@ def _size(ctx: Any, param: Any, value: str) -> tuple[int, int]:
     help="The film: .mp4, .mkv, .mov or .gif; or .png.",
 )
 @click.option("--episodes", metavar="K,…", help="Only these episodes or games, one after the other.  [default: all]")
+@click.option("--failed", is_flag=True, help="Only episodes that went wrong.")
 @click.option("--highlights", is_flag=True, help="Only goals, saves, faults and violations, with what led to them.")
 @click.option("--seconds", type=click.FloatRange(min=0.02), help="Only so much of each, from its start.")
 @click.option("--at", type=click.FloatRange(min=0), metavar="SECONDS", help="Only this moment, as a .png.")
@@ -54,6 +55,7 @@ def video(ctx: click.RichContext, /, **given: Any) -> None:
 
     \b
     hockey video runs/7dof-hit-planner-s0 -o hit.mp4 --episodes 0,3,7
+    hockey video runs/7dof-hit-planner-s0 -o failed.mp4 --failed
     hockey video runs/match-planner-thesis-s0 -o best.mp4 --highlights
     hockey video runs/match-planner-thesis-s0 -o still.png --at 12.5 --quality fine
     hockey video runs/7dof-prepare-planner-s0 -o prepare.gif --episodes 2 --size 480x270 --fps 20
@@ -74,7 +76,7 @@ def video(ctx: click.RichContext, /, **given: Any) -> None:
     options = VideoOptions(width=width, height=height, inset=not given["no_inset"], **own)
     check_video(out, width, height, options.fps)
     library = open_library(given["run"])
-    entries = library.choose(given["episodes"])
+    entries = library.choose(given["episodes"], given["failed"])
     say_notes(library.notes, MOST_NOTES)
     try:
         with of_frames(given["quiet"]) as on_frame:

@@ -17,7 +17,7 @@ from airhockey.commands import _options as common
     show_default=True,
     help="What A plays alone.",
 )
-@common.options(common.robot, common.env, common.game_steps, common.seed)
+@common.options(common.robot, common.env, common.edition, common.game_steps, common.seed)
 @click.option(
     "--episode", type=click.IntRange(min=0), default=0, show_default=True, help="Episode or game to begin with."
 )
@@ -35,6 +35,7 @@ def watch(ctx: click.RichContext, /, **given: Any) -> None:
     \b
     hockey watch planner --task hit
     hockey watch planner thesis
+    hockey watch planner --env hit_single --edition 2025
     hockey watch submissions/my_agent --env 7dof-prepare --disturbances server --episode 12
     hockey watch planner --no-browser --port 9000        then: ssh -L 9000:127.0.0.1:9000 …
     """
@@ -49,14 +50,18 @@ def watch(ctx: click.RichContext, /, **given: Any) -> None:
 
 
 def _task(agent: str, given: dict[str, Any]) -> Any:
-    from airhockey.commands._session import disturbances_of
+    from airhockey.commands._session import disturbances_of, edition_of
+    from airhockey.envs.editions import edition
     from airhockey.evaluator import Options
     from airhockey.evaluator.checks import check_options
     from airhockey.evaluator.isolation.modes import choose
     from airhockey.viewing.live import LiveTask
 
+    typed = () if given["env"] is None else (given["env"],)
+    year = edition_of(given, (agent,), typed)
     options = Options(
-        environments=(given["env"] or f"{given['robot']}-{given['task']}",),
+        environments=(edition(year).counterpart(given["env"] or f"{given['robot']}-{given['task']}"),),
+        edition=year,
         agent=agent,
         episodes=given["episode"] + 1,
         seed=given["seed"],
@@ -76,7 +81,7 @@ def _game(agents: list[str], given: dict[str, Any]) -> Any:
 
     if given["env"] is not None:
         raise ConfigurationError("two players play a game: leave out --env, or the second player")
-    options = game_options_of(given)
+    options = game_options_of(given | {"real_time": 0.0}, dict.fromkeys(agents))
     check_game_options(options)
     for agent in agents:
         check_agent(agent, ("tournament",))

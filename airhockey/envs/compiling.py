@@ -18,6 +18,8 @@ from typing import Any, TypeVar, cast
 
 import numba
 
+from airhockey.errors import EnvironmentFault
+
 _PASSING = "AIRHOCKEY_PASSING_CACHE"
 """Names the folder for compiled code that the parent made, where none can be written that stays."""
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -30,8 +32,15 @@ def compiler(home: pathlib.Path, sources: Iterable[pathlib.Path], **options: Any
         home: Folder of the group; the cache is in its `__pycache__`, or in the user's cache where that is not writable.
         sources: Every file that the group's compiled code is made of.
         options: More options of `numba.njit`.
+
+    Raises:
+        EnvironmentFault: The compiler is disabled.
     """
-    cache = _cache_folder(home, sources)
+    if numba.config.DISABLE_JIT:
+        raise EnvironmentFault(
+            "numba's compiler is disabled, and nothing can be simulated without: unset NUMBA_DISABLE_JIT"
+        )
+    cache = cache_folder(home, sources)
 
     def compiled(function: Function) -> Function:
         before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, cache
@@ -43,7 +52,8 @@ def compiler(home: pathlib.Path, sources: Iterable[pathlib.Path], **options: Any
     return compiled
 
 
-def _cache_folder(home: pathlib.Path, sources: Iterable[pathlib.Path]) -> str:
+def cache_folder(home: pathlib.Path, sources: Iterable[pathlib.Path]) -> str:
+    """Where the compiled code of a group is kept; see `compiler`."""
     fingerprint = hashlib.sha256(b"\0".join(source.read_bytes() for source in sorted(sources))).hexdigest()[:16]
     name = f"compiled-{fingerprint}"
     if numba.config.CACHE_DIR:

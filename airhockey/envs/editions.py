@@ -3,6 +3,7 @@
 Ranges and names may differ between editions; code asks the edition and knows no number of its own.
 """
 
+from collections.abc import Iterable
 from functools import cache
 from importlib import resources
 from typing import Any
@@ -14,6 +15,7 @@ from airhockey.errors import ConfigurationError, unknown
 from airhockey.inputs.plain_yaml import load_yaml
 
 Range = tuple[float, float]
+DEFAULT = "2023"
 ROBOTS: dict[str, RobotSpec] = {"planar": PLANAR, "iiwa": IIWA}
 
 _LENGTHS = {
@@ -141,10 +143,32 @@ class Edition(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     deployability: Deployability
     game_penalty_per_episode: float
     score_weights: dict[str, dict[str, float]]
+    phases: dict[str, str]
+
+    @property
+    def tasks(self) -> tuple[str, ...]:
+        """The names of the environments that one player plays."""
+        return tuple(name for name, rules in self.environments.items() if rules.kind != "game")
+
+    def tasks_of(self, robot: str) -> tuple[str, ...]:
+        """The tasks of a robot ("3dof", "7dof") that its score consists of.
+
+        Raises:
+            ConfigurationError: This edition has no such robot.
+        """
+        if robot not in self.score_weights:
+            raise unknown(f"robot of edition {self.edition}", robot, self.score_weights)
+        return tuple(self.score_weights[robot])
 
     def environment(self, name: str) -> EnvironmentRules:
         """The rules of one environment; raises `ConfigurationError` for a name that this edition does not have."""
         return self.environments[self.official_name(name)]
+
+    @property
+    def names(self) -> dict[str, str]:
+        """Every name that an environment can be given by -> its name in this edition."""
+        others = {rules.also: official for official, rules in self.environments.items() if rules.also is not None}
+        return {name: name for name in self.environments} | others
 
     def official_name(self, name: str) -> str:
         """The name of an environment in this edition, from that or from the one in the scheme of all editions ("7dof-hit").
@@ -152,12 +176,19 @@ class Edition(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         Raises:
             ConfigurationError: This edition has no such environment.
         """
-        if name in self.environments:
-            return name
-        others = {rules.also: official for official, rules in self.environments.items() if rules.also is not None}
-        if name in others:
-            return others[name]
-        raise unknown(f"environment of edition {self.edition}", name, [*self.environments, *others])
+        if name in self.names:
+            return self.names[name]
+        error = unknown(f"environment of edition {self.edition}", name, self.names)
+        home = edition_of_names((name,))
+        raise error if home is None else ConfigurationError(f"{error}; edition {home} has it")
+
+    def counterpart(self, name: str) -> str:
+        """The name here of an environment that is called so in any edition; raises `ConfigurationError` where there is none."""
+        if name not in self.names:
+            elsewhere = (edition(year).environments.get(name) for year in available())
+            others = (rules.also for rules in elsewhere if rules is not None)
+            name = next((other for other in others if other in self.names), name)
+        return self.official_name(name)
 
     def starts_of(self, name: str) -> tuple[Start, ...]:
         """The areas in which the puck of an environment starts."""
@@ -182,8 +213,15 @@ def available() -> tuple[str, ...]:
     return tuple(sorted(entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml")))
 
 
+def edition_of_names(names: Iterable[str]) -> str | None:
+    """The edition that calls its environments so, as 2025 does with "hit"; None where that is not one edition alone."""
+    officially = {name: {year for year in available() if name in edition(year).environments} for name in names}
+    years = {year for found in officially.values() if len(found) == 1 for year in found}
+    return years.pop() if len(years) == 1 else None
+
+
 @cache
-def edition(name: str = "2023") -> Edition:
+def edition(name: str = DEFAULT) -> Edition:
     """Read and check an edition of the rules.
 
     Raises:

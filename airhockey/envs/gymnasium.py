@@ -29,6 +29,7 @@ except ImportError as error:
 from airhockey.envs.copying import Copyable
 from airhockey.envs.editions import edition as rules
 from airhockey.envs.environment import Environment, Order
+from airhockey.envs.rendering.render import FRAMES_PER_SECOND, MODES, Renderer
 from airhockey.envs.tasks.reward import RewardedState
 
 Array = NDArray[np.float64]
@@ -58,12 +59,14 @@ class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
             observations in world coordinates, as for the official wrapper's `custom_reward_function`. Without one the
             reward is `success` at the end of an episode and 0 before.
         edition: The year whose rules apply.
+        render_mode: "rgb_array", "human" (live: in a window, or on a page where there is no display) or None.
+        width, height: Of the pictures, in pixels.
 
     Attributes:
         environment: The challenge environment behind it.
     """
 
-    metadata = {"render_modes": []}  # noqa: RUF012 - Gymnasium's own way to say so
+    metadata = {"render_modes": list(MODES), "render_fps": FRAMES_PER_SECOND}  # noqa: RUF012 - Gymnasium's own way to say so
 
     def __init__(
         self,
@@ -72,8 +75,13 @@ class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
         disturbances: Any = "ideal",
         reward: Reward | None = None,
         edition: str = "2023",
+        render_mode: str | None = None,
+        width: int = 640,
+        height: int = 360,
     ) -> None:
         self.environment = Environment(name, interpolation_order, disturbances, edition)
+        self.render_mode = render_mode
+        self._renderer = Renderer(name, edition, render_mode, width, height)
         seen = self.environment.env_info["rl_info"].observation_space.shape
         self.observation_space = spaces.Box(-np.inf, np.inf, seen, np.float64)
         low, high = self.environment.formats[0].limits(self.environment.simulation.robot)
@@ -92,7 +100,9 @@ class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
         start = given.get("seed", seed)
         if start is not None and not isinstance(start, np.random.SeedSequence):
             start = int(start) % 2**32
-        return self.environment.reset(start, given.get("state")), {}
+        observation = self.environment.reset(start, given.get("state"))
+        self._show()
+        return observation, {}
 
     def step(self, action: Array) -> tuple[Array, float, bool, bool, dict[str, Any]]:
         """Advance by one control step of 0.02 s."""
@@ -104,7 +114,24 @@ class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
             reward = float(self._reward(env, before, action, env.base_observation, absorbing))
         else:
             reward = float(info["success"]) if absorbing or truncated else 0.0
+        self._show()
         return observation, reward, absorbing, truncated, info | {"is_success": bool(info["success"])}
+
+    def render(self) -> Any:
+        """The present moment: an array of shape (height, width, 3) for "rgb_array"; "human" shows every step by itself."""
+        if self.render_mode is None:
+            gymnasium.logger.warn(
+                'render() shows nothing: make the environment with render_mode="rgb_array" or "human"'
+            )
+        return self._renderer.render(self.environment.simulation.data)
+
+    def close(self) -> None:
+        """Close what `render` opened."""
+        self._renderer.close()
+
+    def _show(self) -> None:
+        if self.render_mode == "human":
+            self._renderer.render(self.environment.simulation.data)
 
     def get_state(self) -> RewardedState:
         """The present moment; see `airhockey.envs.Environment.get_state`. A reward of this package is part of it."""

@@ -7,8 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs.copying import Copyable
+from airhockey.envs.editions import DEFAULT, edition_of_names
 from airhockey.envs.environment import Environment as ChallengeEnvironment
 from airhockey.envs.info import RLInfo
+from airhockey.envs.rendering.render import MODES, Renderer
 from airhockey.envs.tasks.reward import RewardedState
 from airhockey.errors import MissingDependencyError
 
@@ -86,7 +88,7 @@ class BaseEnvironment(Copyable):
 
 class AirHockeyChallengeWrapper(Copyable, Environment):
     """The environment as agents of the challenge know it: `AirHockeyChallengeWrapper("7dof-hit")`, or of the edition of 2025
-    `AirHockeyChallengeWrapper("hit", edition="2025")`.
+    `AirHockeyChallengeWrapper("hit")`, with `edition="2025"` where the name is that of several editions ("tournament").
 
     It can be copied, pickled, saved and restored as `airhockey.envs.Environment` can, with the same future. Starts come from
     NumPy's global generator, as in the official package; but a copy, and a wrapper that went back to a saved moment, must
@@ -98,7 +100,8 @@ class AirHockeyChallengeWrapper(Copyable, Environment):
         custom_reward_function: Called with (base environment, state, action, next state, absorbing) after each step; the
             states are base observations, in world coordinates.
         interpolation_order: 1, 2, 3, 4, 5, -1 or None; in the tournament also a pair of them.
-        disturbances, edition, visual: See `airhockey.envs.Environment`.
+        disturbances, visual: See `airhockey.envs.Environment`.
+        edition: The year whose rules apply; by default the one that has an environment of this name, the first of them.
 
     Attributes:
         base_env: Has `model`, `data`, `env_info` and `init_state`.
@@ -112,18 +115,20 @@ class AirHockeyChallengeWrapper(Copyable, Environment):
         custom_reward_function: Reward | None = None,
         interpolation_order: Any = 3,
         disturbances: Any = "ideal",
-        edition: str = "2023",
+        edition: str | None = None,
         visual: bool = True,
         **kwargs: Any,
     ) -> None:
         if isinstance(interpolation_order, list):
             interpolation_order = tuple(interpolation_order)
+        edition = edition or edition_of_names((env,)) or DEFAULT
         self._env = ChallengeEnvironment(env, interpolation_order, disturbances, edition, visual)
         self.env_name = self._env.name
         self.env_info = self._env.env_info
         self.env_info["rl_info"] = _mdp_info(self.env_info["rl_info"])
         self.base_env = BaseEnvironment(self._env, self.env_info)
         self._reward = custom_reward_function
+        self._edition, self._renderers = edition, dict[str, Renderer]()
         self._draw_from_global()
         self._env.new_game()
         super().__init__(self.env_info["rl_info"])
@@ -151,8 +156,26 @@ class AirHockeyChallengeWrapper(Copyable, Environment):
         reward = self._reward(self.base_env, before, action, self._env.base_observation, absorbing)
         return observation, reward, absorbing, info
 
+    def render(self, record: bool = False) -> Any:
+        """Show the present moment, live.
+
+        Args:
+            record: Also give it as a picture.
+
+        Returns:
+            With `record` an array of shape (height, width, 3), else None.
+        """
+        if not self._renderers:
+            self._renderers = {mode: Renderer(self.env_name, self._edition, mode) for mode in MODES}
+        data = self._env.simulation.data
+        if record:
+            return self._renderers["rgb_array"].render(data)
+        return self._renderers["human"].render(data)
+
     def stop(self) -> None:
-        """Nothing to stop."""
+        """Close what `render` opened."""
+        for renderer in self._renderers.values():
+            renderer.close()
 
     def get_state(self) -> RewardedState:
         """The present moment; see `airhockey.envs.Environment.get_state`. A reward of this package is part of it."""

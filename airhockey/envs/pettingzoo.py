@@ -24,6 +24,7 @@ except ImportError as error:
 from airhockey.envs.actions import ActionFormat
 from airhockey.envs.copying import Copyable
 from airhockey.envs.environment import Environment, Order
+from airhockey.envs.rendering.render import FRAMES_PER_SECOND, MODES, Renderer
 from airhockey.envs.tasks.game import points_reward
 
 Array = NDArray[np.float64]
@@ -44,12 +45,15 @@ class TournamentEnv(Copyable, pettingzoo.ParallelEnv[str, Array, Array]):
         disturbances: A profile's name, the path of a YAML file, or a profile.
         max_cycles: Length of the game in control steps, if not the rules'.
         edition: The year whose rules apply.
+        render_mode: "rgb_array", "human" (live: in a window, or on a page where there is no display) or None.
+        width, height: Of the pictures, in pixels.
 
     Attributes:
         environment: The challenge environment behind it.
     """
 
-    metadata = {"name": IDS["2023"], "render_modes": []}  # noqa: RUF012 - PettingZoo's own way to say so
+    # PettingZoo's own way to say so
+    metadata = {"name": IDS["2023"], "render_modes": list(MODES), "render_fps": FRAMES_PER_SECOND}  # noqa: RUF012
 
     def __init__(
         self,
@@ -57,15 +61,20 @@ class TournamentEnv(Copyable, pettingzoo.ParallelEnv[str, Array, Array]):
         disturbances: Any = "ideal",
         max_cycles: int | None = None,
         edition: str = "2023",
+        render_mode: str | None = None,
+        width: int = 640,
+        height: int = 360,
     ) -> None:
         self.environment = Environment("tournament", interpolation_order, disturbances, edition)
         self.possible_agents = list(PLAYERS)
         self.agents: list[str] = []
-        self.render_mode = None
+        self.render_mode = render_mode
+        self._renderer = Renderer("tournament", edition, render_mode, width, height)
         self._step, self._score = 0, [0, 0]
         self._steps = self.environment.horizon if max_cycles is None else max_cycles
         seen = self.environment.env_info["rl_info"].observation_space.shape
         robot = self.environment.simulation.robot
+        self.state_space = spaces.Box(-np.inf, np.inf, self.environment.base_observation.shape, np.float64)
         self._boxes = {player: spaces.Box(-np.inf, np.inf, seen, np.float64) for player in PLAYERS}
         self._actions = {
             player: _box(form, robot) for player, form in zip(PLAYERS, self.environment.formats, strict=True)
@@ -87,6 +96,7 @@ class TournamentEnv(Copyable, pettingzoo.ParallelEnv[str, Array, Array]):
             self.environment.new_game()
         observation = self.environment.reset(None if seed is None else int(seed) % 2**32)
         self.agents, self._step, self._score = list(PLAYERS), 0, self.environment.score
+        self._show()
         return self._split(observation), {player: {"serve": True} for player in PLAYERS}
 
     def step(
@@ -111,7 +121,24 @@ class TournamentEnv(Copyable, pettingzoo.ParallelEnv[str, Array, Array]):
         rewards = dict(zip(PLAYERS, points_reward(before, self._score), strict=True))
         if ended:
             self.agents = []
+        self._show()
         return self._split(observation), rewards, dict.fromkeys(PLAYERS, False), dict.fromkeys(PLAYERS, ended), infos
+
+    def state(self) -> Array:
+        """What is true of both players, without noise: the base observation, in world coordinates."""
+        return self.environment.base_observation
+
+    def render(self) -> Any:
+        """The present moment: an array of shape (height, width, 3) for "rgb_array"; "human" shows every step by itself."""
+        return self._renderer.render(self.environment.simulation.data)
+
+    def close(self) -> None:
+        """Close what `render` opened."""
+        self._renderer.close()
+
+    def _show(self) -> None:
+        if self.render_mode == "human":
+            self._renderer.render(self.environment.simulation.data)
 
     def get_state(self) -> tuple[Any, ...]:
         """The present moment; see `airhockey.envs.Environment.get_state`."""

@@ -11,7 +11,7 @@ from airhockey.envs.disturbances import load_disturbances
 from airhockey.envs.editions import Edition, edition
 from airhockey.errors import ConfigurationError, unknown
 from airhockey.evaluator.isolation.handle import CLOCKS
-from airhockey.evaluator.isolation.modes import REMOTE, choose, host_and_port
+from airhockey.evaluator.isolation.modes import REMOTE, check_python, choose, host_and_port
 from airhockey.evaluator.runs.game_records import VARIANTS, GameOptions
 from airhockey.evaluator.runs.records import Options
 
@@ -35,13 +35,14 @@ def check_options(options: Options) -> None:
     if options.clock not in CLOCKS:
         raise unknown("clock", options.clock, CLOCKS)
     if not options.environments:
-        raise ConfigurationError(f"no environment to evaluate on; there are {', '.join(task_environments(rules))}")
+        raise ConfigurationError(f"no environment to evaluate on; there are {', '.join(rules.tasks)}")
     for name in options.environments:
         _check_environment(name, rules)
     load_disturbances(options.disturbances)
     check_agent(options.agent, options.environments)
     _check_parameters(options)
-    _check_settings(options)
+    check_settings(options.agent, options.settings)
+    check_python(options.agent, options.isolate, options.python)
     choose(options.agent, options.isolate)
     if options.patience <= 0.0:
         raise ConfigurationError(f"the patience must be positive, not {options.patience:g} s")
@@ -58,13 +59,11 @@ def _check_parameters(options: Options) -> None:
     thesis_parameters(options.parameters)
 
 
-def _check_settings(options: Options) -> None:
-    """Only our own players have this controller, and it must have these parameters."""
-    if options.settings and options.agent not in AGENTS:
-        raise ConfigurationError(
-            f"--set is for the players of airhockey ({', '.join(AGENTS)}), not for {options.agent!r}"
-        )
-    parsed(options.settings)
+def check_settings(agent: str, settings: tuple[str, ...]) -> None:
+    """Only our own players have this controller, and it must have these parameters; raises `ConfigurationError`."""
+    if settings and agent not in AGENTS:
+        raise ConfigurationError(f"--set is for the players of airhockey ({', '.join(AGENTS)}), not for {agent!r}")
+    parsed(settings)
 
 
 def check_agent_seed(secret: str | None) -> None:
@@ -79,17 +78,11 @@ def check_seed(seed: int) -> None:
         raise ConfigurationError(f"the seed must not be negative, as {seed} is")
 
 
-def task_environments(rules: Edition) -> tuple[str, ...]:
-    """Names of the environments that one player is evaluated on; a game of two is not among them."""
-    return tuple(name for name, environment in rules.environments.items() if environment.kind != "game")
-
-
 def _check_environment(name: str, rules: Edition) -> None:
-    tasks = task_environments(rules)
-    if name in rules.environments and name not in tasks:
-        raise ConfigurationError(f"{name!r} is a game of two players, not a task; the tasks are {', '.join(tasks)}")
-    if name not in tasks:
-        raise unknown("environment", name, tasks)
+    if rules.official_name(name) not in rules.tasks:
+        raise ConfigurationError(
+            f"{name!r} is a game of two players, not a task; the tasks are {', '.join(rules.tasks)}"
+        )
 
 
 def check_game_options(options: GameOptions) -> None:

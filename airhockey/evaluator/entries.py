@@ -22,12 +22,16 @@ class Entry(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         agent: A name of the registry, or the absolute path of a submission.
         second_agent: Plays in phase 2 instead, if given.
         interpolation_order: See `records.Order`.
+        python: Another interpreter for a submission's process.
+        settings: Of our own players' controller.
     """
 
     name: str
     agent: str
     second_agent: str | None = None
     interpolation_order: Order = "agent"
+    python: str | None = None
+    settings: tuple[str, ...] = ()
 
     def agent_in(self, phase: int) -> str:
         """Who plays for this entry in a phase, 1 or 2."""

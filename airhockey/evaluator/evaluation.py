@@ -10,14 +10,27 @@ from numpy.typing import NDArray
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.envs.editions import edition
+from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.evaluator.checks import check_options
 from airhockey.evaluator.engines.engine import Engine, InProcess
 from airhockey.evaluator.engines.pool import JobFailed
 from airhockey.evaluator.judging import tasks as judging
+from airhockey.evaluator.play.blame import worker_lost
 from airhockey.evaluator.play.episode import EpisodePlayer, failed
 from airhockey.evaluator.runs.episode_folder import EpisodeFolder
 from airhockey.evaluator.runs.journal import read_journal
-from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Job, Options, RunResult, RunTime, TaskResult
+from airhockey.evaluator.runs.manifest import Manifest
+from airhockey.evaluator.runs.records import (
+    Episode,
+    EpisodeRecord,
+    Job,
+    Options,
+    PreparationTime,
+    RunResult,
+    RunTime,
+    TaskResult,
+    isolation_of,
+)
 from airhockey.evaluator.runs.trajectories import TRAJECTORIES, read_steps
 
 OnEpisode = Callable[[EpisodeRecord], None]
@@ -36,7 +49,8 @@ def evaluate(folder: EpisodeFolder, engine: Engine | None = None, on_episode: On
         on_episode: Called with every record as it comes.
 
     Raises:
-        AirHockeyError: The disk is full, or workers do not start.
+        AirHockeyError: The disk is full.
+        EnvironmentFault: The environment, its disturbances or this machine failed; everything played so far is kept.
         KeyboardInterrupt: The user's; everything played so far is kept.
     """
     manifest = folder.manifest
@@ -45,7 +59,7 @@ def evaluate(folder: EpisodeFolder, engine: Engine | None = None, on_episode: On
         results = (engine or InProcess()).run(EpisodePlayer(manifest.options, manifest.profile), missing)
         with contextlib.closing(results):
             for job, result in results:
-                episode = failed(job, result.reason) if isinstance(result, JobFailed) else result
+                episode = _lost(job, result, manifest.options) if isinstance(result, JobFailed) else result
                 folder.add(episode)
                 if on_episode is not None:
                     on_episode(episode.record)
@@ -53,6 +67,12 @@ def evaluate(folder: EpisodeFolder, engine: Engine | None = None, on_episode: On
         result_of_all = report(folder.path)
         folder.keep_result(result_of_all)
     return result_of_all
+
+
+def _lost(job: Job, result: JobFailed, options: Options) -> Episode:
+    """An episode whose worker died every time; the agent's failure where its code ran there."""
+    worker_lost((options.agent,), options.isolate, result.reason)
+    return failed(job, result.reason, options.edition)
 
 
 def play_episode(options: Options, env: str, index: int) -> Episode:
@@ -80,16 +100,17 @@ def report(path: Path) -> Result:
     Args:
         path: The run folder.
     """
-    options = EpisodeFolder.read(path).options
+    manifest = EpisodeFolder.read(path)
+    options = manifest.options
     by_env: dict[str, list[EpisodeRecord]] = {env: [] for env in options.environments}
     for record in read_journal(path, EpisodeRecord).records:
         by_env[record.env].append(record)
-    results = tuple(_task_result(path, options, env, records) for env, records in by_env.items())
+    results = tuple(_task_result(path, manifest, env, records) for env, records in by_env.items())
     if len(results) == 1:
         return results[0]
     phase, score = judging.score({result.env: result.success for result in results}, edition(options.edition))
     worst = judging.worst_class(result.deployability for result in results)
-    return RunResult(results=results, deployability=worst, phase=phase, score=score)
+    return RunResult(results=results, deployability=worst, phase=phase, score=score, edition=options.edition)
 
 
 def failure_reasons(path: Path, most: int = 3) -> list[tuple[str, int]]:
@@ -98,7 +119,8 @@ def failure_reasons(path: Path, most: int = 3) -> list[tuple[str, int]]:
     return Counter(record.error for record in records if record.error is not None).most_common(most)
 
 
-def _task_result(path: Path, options: Options, env: str, records: list[EpisodeRecord]) -> TaskResult:
+def _task_result(path: Path, manifest: Manifest[Options], env: str, records: list[EpisodeRecord]) -> TaskResult:
+    options = manifest.options
     verdict = judging.judge(records, edition(options.edition))
     return TaskResult(
         env=env,
@@ -112,11 +134,23 @@ def _task_result(path: Path, options: Options, env: str, records: list[EpisodeRe
         violations=verdict.violations,
         computation_time=_run_time(read_steps(path / TRAJECTORIES, env, "computation_time")),
         agent_errors=verdict.failures,
+        inputs=manifest.inputs,
+        edition=options.edition,
+        isolation=isolation_of(record.process for record in records),
+        preparation_time=PreparationTime(
+            build_agent=max((record.process.build_time for record in records), default=0.0),
+            episode_start=max((record.process.start_time for record in records), default=0.0),
+        ),
     )
 
 
 def _run_time(seconds: NDArray[np.float64]) -> RunTime:
-    """Mean, 99th percentile and maximum over all steps, in [s]; zeros where no step was played."""
+    """What the clock saw over all steps; zeros where no step was played."""
     if seconds.size == 0:
         return RunTime(mean=0.0, p99=0.0, max=0.0)
-    return RunTime(mean=float(seconds.mean()), p99=float(np.percentile(seconds, 99)), max=float(seconds.max()))
+    return RunTime(
+        mean=float(seconds.mean()),
+        p99=float(np.percentile(seconds, 99)),
+        max=float(seconds.max()),
+        late=int((seconds > CONTROL_PERIOD).sum()),
+    )

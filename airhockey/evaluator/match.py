@@ -1,23 +1,35 @@
 """A match: some games of one pair of players."""
 
 import contextlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import msgspec
 
+from airhockey.envs.editions import DEFAULT
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.checks import check_agent, check_game_options, check_seed
+from airhockey.evaluator.checks import check_agent, check_game_options, check_seed, check_settings
 from airhockey.evaluator.engines.engine import Engine, InProcess
 from airhockey.evaluator.engines.pool import JobFailed
+from airhockey.evaluator.isolation.modes import check_python
 from airhockey.evaluator.judging.games import tally
+from airhockey.evaluator.play.blame import worker_lost
 from airhockey.evaluator.play.game import Game, GamePlayer, live_file, lost
 from airhockey.evaluator.play.seeding import game_seed
 from airhockey.evaluator.play.watchdog import culprit
 from airhockey.evaluator.runs.game_folder import GameFolder
-from airhockey.evaluator.runs.game_records import Event, GameJob, GameOptions, GameRecord, Side, Winner, in_order
+from airhockey.evaluator.runs.game_records import (
+    Event,
+    GameJob,
+    GameOptions,
+    GameRecord,
+    PlayerResult,
+    Side,
+    Winner,
+    in_order,
+)
 from airhockey.evaluator.runs.manifest import MATCH
-from airhockey.evaluator.runs.records import Order
+from airhockey.evaluator.runs.records import Order, PreparationTime
 
 OnGame = Callable[[GameRecord], None]
 
@@ -32,6 +44,8 @@ class MatchOptions(msgspec.Struct, frozen=True, kw_only=True):
         swap_sides: In every second game the away player plays on the left.
         game: How each is played.
         home_order, away_order: Interpolation orders.
+        python: Of home and away: another interpreter for a submission's process.
+        settings: Of home and away: of our own players' controllers.
     """
 
     home: str
@@ -42,6 +56,8 @@ class MatchOptions(msgspec.Struct, frozen=True, kw_only=True):
     game: GameOptions = GameOptions()
     home_order: Order = "agent"
     away_order: Order = "agent"
+    python: tuple[str | None, str | None] = (None, None)
+    settings: tuple[tuple[str, ...], tuple[str, ...]] = ((), ())
 
 
 class GameResult(msgspec.Struct, frozen=True, kw_only=True):
@@ -57,15 +73,18 @@ class GameResult(msgspec.Struct, frozen=True, kw_only=True):
     penalty: tuple[float, float]
     deployability: tuple[str, str]
     violations: tuple[dict[str, int], dict[str, int]]
+    computation_time_mean: tuple[float, float]
     computation_time_max: tuple[float, float]
     held: tuple[int, int]
     failures: tuple[str | None, str | None]
+    isolation: tuple[str, str] = ("", "")
+    preparation_time: tuple[PreparationTime, PreparationTime] = (PreparationTime(), PreparationTime())
     winner: Winner
     events: tuple[Event, ...]
 
 
-class MatchResult(msgspec.Struct, frozen=True, kw_only=True):
-    """What `hockey match --json` prints: the games, and how home fared in them."""
+class MatchResult(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """What `hockey match --json` prints: the games, how home fared in them, and the manifest's `inputs`."""
 
     home: str
     away: str
@@ -74,6 +93,8 @@ class MatchResult(msgspec.Struct, frozen=True, kw_only=True):
     wins: int
     draws: int
     losses: int
+    inputs: dict[str, str] = {}
+    edition: str = DEFAULT
 
 
 class MatchFolder(GameFolder[MatchOptions]):
@@ -88,8 +109,10 @@ class MatchFolder(GameFolder[MatchOptions]):
         check_seed(options.seed)
         if options.games < 1:
             raise ConfigurationError(f"the number of games must be positive, not {options.games}")
-        for agent in (options.home, options.away):
+        for agent, python, settings in zip((options.home, options.away), options.python, options.settings, strict=True):
             check_agent(agent, ("tournament",))
+            check_python(agent, options.game.isolate, python)
+            check_settings(agent, settings)
 
 
 begin_match = MatchFolder.begin
@@ -100,11 +123,19 @@ def match_jobs(options: MatchOptions) -> list[GameJob]:
     """The games of a match."""
     jobs = []
     for index in range(options.games):
-        home = options.home, options.home_order
-        away = options.away, options.away_order
-        left, right = (away, home) if options.swap_sides and index % 2 else (home, away)
-        seed = game_seed(options.seed, str(index))
-        jobs.append(GameJob(str(index), left[0], right[0], left[0], right[0], seed, left[1], right[1]))
+        job = GameJob(
+            str(index),
+            options.home,
+            options.away,
+            options.home,
+            options.away,
+            game_seed(options.seed, str(index)),
+            options.home_order,
+            options.away_order,
+            *options.python,
+            *options.settings,
+        )
+        jobs.append(job.swapped() if options.swap_sides and index % 2 else job)
     return jobs
 
 
@@ -119,7 +150,7 @@ def play_match(folder: MatchFolder, engine: Engine | None = None, on_game: OnGam
     options = folder.manifest.options
     with folder:
         play_games(folder, match_jobs(options), engine, on_game)
-        result = match_result(options, folder.records)
+        result = match_result(options, folder.records, folder.manifest.inputs)
         folder.keep_result(result)
     return result
 
@@ -141,11 +172,14 @@ def play_games(
 def _game_of(job: GameJob, result: Game | JobFailed, player: GamePlayer) -> Game:
     if not isinstance(result, JobFailed):
         return result
+    worker_lost((job.home_agent, job.away_agent), player.options.isolate, result.reason)
     guilty = None if player.live is None else culprit(live_file(player.live, job))
     return lost(job, player.options, result.reason, guilty)
 
 
-def match_result(options: MatchOptions, records: list[GameRecord]) -> MatchResult:
+def match_result(
+    options: MatchOptions, records: list[GameRecord], inputs: Mapping[str, str] | None = None
+) -> MatchResult:
     """The match from its games, in their order."""
     jobs = match_jobs(options)
     games = tuple(
@@ -161,6 +195,8 @@ def match_result(options: MatchOptions, records: list[GameRecord]) -> MatchResul
         wins=wins,
         draws=draws,
         losses=losses,
+        inputs=dict(inputs or {}),
+        edition=options.game.edition,
     )
 
 
@@ -180,12 +216,19 @@ def _seen_from_home(record: GameRecord, swapped: bool) -> GameResult:
         penalty=(home.penalty, away.penalty),
         deployability=(home.deployability, away.deployability),
         violations=(home.violations, away.violations),
+        computation_time_mean=(home.computation_time.mean, away.computation_time.mean),
         computation_time_max=(home.computation_time.max, away.computation_time.max),
         held=(home.held, away.held),
         failures=(home.failure, away.failure),
+        isolation=(home.process.isolation, away.process.isolation),
+        preparation_time=(_preparation_time(home), _preparation_time(away)),
         winner=winner,
         events=record.events if not swapped else tuple(_swapped(event) for event in record.events),
     )
+
+
+def _preparation_time(player: PlayerResult) -> PreparationTime:
+    return PreparationTime(build_agent=player.process.build_time, episode_start=player.process.start_time)
 
 
 def _swapped(event: Event) -> Event:

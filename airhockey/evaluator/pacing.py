@@ -11,6 +11,7 @@ from pathlib import Path
 from airhockey import envs
 from airhockey.agents.packaging.checkout import find_checkout
 from airhockey.agents.submission import is_submission
+from airhockey.envs.editions import DEFAULT
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.modes import REMOTE, choose
@@ -36,6 +37,7 @@ def pace_for(
     isolate: str | None = None,
     patience: float = Limits.patience,
     python: str | None = None,
+    edition: str = DEFAULT,
 ) -> float:
     """The pace that an agent needs: 1 for one that thinks beside its steps, 0 (as fast as possible) for everybody else.
 
@@ -47,6 +49,7 @@ def pace_for(
         isolate: Where it lives during the trial; never in this process.
         patience: Longest time for an answer, in [s].
         python: Another interpreter for its process.
+        edition: Of the environment.
     """
     if agent.startswith(REMOTE) or not is_submission(agent) or not starts_anything(Path(agent)):
         return 0.0
@@ -55,7 +58,7 @@ def pace_for(
     entrants = [Entrant(agent, isolate=mode, limits=Limits(patience=patience), python=python)]
     if environment == "tournament":
         entrants.append(Entrant("hold"))
-    env, seats = build_seats(functools.partial(envs.make, environment), entrants, Care())
+    env, seats = build_seats(functools.partial(envs.make, environment, edition=edition), entrants, Care())
     rollout = Rollout(env, seats, seed=0)
     try:
         return 1.0 if not rollout.failed and thinking_time(rollout, _STEPS) > BUSY else 0.0

@@ -5,8 +5,9 @@ from collections.abc import Mapping
 import msgspec
 
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.checks import check_agent, check_game_options, check_seed
+from airhockey.evaluator.checks import check_agent, check_game_options, check_seed, check_settings
 from airhockey.evaluator.entries import NAME_LETTERS, Entry, with_replacements
+from airhockey.evaluator.isolation.modes import check_python
 from airhockey.evaluator.play.seeding import game_seed
 from airhockey.evaluator.runs.game_records import GameJob, GameOptions
 
@@ -44,6 +45,10 @@ def schedule(options: TournamentOptions) -> list[GameJob]:
                     game_seed(options.seed, key),
                     home.interpolation_order,
                     away.interpolation_order,
+                    home.python,
+                    away.python,
+                    home.settings,
+                    away.settings,
                 )
             )
     return jobs
@@ -68,6 +73,8 @@ def check_tournament(options: TournamentOptions) -> None:
             raise ConfigurationError(f"entry {entry.name!r} has a replacement for phase 2, but there is one phase")
         for phase in range(1, options.phases + 1):
             check_agent(entry.agent_in(phase), ("tournament",))
+            check_python(entry.agent_in(phase), options.game.isolate, entry.python)
+            check_settings(entry.agent_in(phase), entry.settings)
 
 
 def extended(
@@ -88,6 +95,10 @@ def extended(
                 f"the tournament has an entry {entry.name!r} already, with agent {before.agent!r}; give the new one another "
                 "name: NAME=AGENT; or, for another agent in phase 2, use --replace"
             )
+        for field in ("python", "settings"):
+            value, given = getattr(before, field), getattr(entry, field)
+            if given and given != value:
+                raise ConfigurationError(f"the tournament's entry {entry.name!r} has {field} {value!r}, not {given!r}")
     fresh = tuple(entry for entry in added if entry.name not in known)
     entries = with_replacements((*options.entries, *fresh), replacements)
     return msgspec.structs.replace(options, entries=entries, phases=phases or options.phases)

@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.engines.engine import Engine
 from airhockey.evaluator.entries import Entry
@@ -75,21 +77,27 @@ def play_tournament(
     jobs = schedule(options)
     names = [entry.name for entry in options.entries]
 
+    def table_so_far() -> Standings:
+        table = standings(names, jobs, folder.records, options.game.edition)
+        return write_standings(folder.path, msgspec.structs.replace(table, inputs=folder.manifest.inputs))
+
     def on_game(record: GameRecord) -> None:
-        table = write_standings(folder.path, names, jobs, folder.records)
+        table = table_so_far()
         if on_standings is not None:
             on_standings(record, table)
 
     with folder:
         play_games(folder, jobs, engine, on_game)
-        return write_standings(folder.path, names, jobs, folder.records)
+        return table_so_far()
 
 
 def read_standings(path: Path) -> tuple[Manifest[TournamentOptions], Standings]:
     """The standings of a tournament from its folder, finished or not, without playing."""
     manifest = TournamentFolder.read(path)
-    names = [entry.name for entry in manifest.options.entries]
-    return manifest, standings(names, schedule(manifest.options), read_journal(path, GameRecord).records)
+    options = manifest.options
+    names, records = [entry.name for entry in options.entries], read_journal(path, GameRecord).records
+    found = standings(names, schedule(options), records, options.game.edition)
+    return manifest, msgspec.structs.replace(found, inputs=manifest.inputs)
 
 
 def _check_played(records: Iterable[GameRecord], options: TournamentOptions) -> None:

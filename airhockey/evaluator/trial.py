@@ -8,7 +8,8 @@ import msgspec
 import numpy as np
 
 from airhockey import envs
-from airhockey.errors import ActionError, AirHockeyError
+from airhockey.envs.editions import DEFAULT
+from airhockey.errors import ActionError
 from airhockey.evaluator.isolation.failures import AgentDied, AgentTimeout, describe
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.pacing import PAUSE
@@ -56,12 +57,12 @@ class Trial(msgspec.Struct, frozen=True):
     thinking: float = 0.0
 
 
-def try_out(mine: Entrant, task: str, steps: int, side: int = 1) -> Trial | Problem:
+def try_out(mine: Entrant, task: str, steps: int, side: int = 1, edition: str = DEFAULT) -> Trial | Problem:
     """Play a few steps of one task, alone or against somebody who stands still."""
     limits = mine.limits
     entrants = [mine] if task != GAME else [mine, Entrant("hold")] if side == 1 else [Entrant("hold"), mine]
     began = time.perf_counter()
-    env, seats = build_seats(functools.partial(envs.make, task), entrants, Care())
+    env, seats = build_seats(functools.partial(envs.make, task, edition=edition), entrants, Care())
     start, seat, rollout = time.perf_counter() - began, seats[side - 1], Rollout(env, seats, seed=0)
     where = task if side == 1 else f"{task} (away)"
     if seat.agent is None or seat.error is not None:
@@ -149,6 +150,9 @@ def _remedy(failure: BaseException, printed: str, limits: Limits) -> str:
         return "import what there is today, or evaluate it with an interpreter that has the old one (--python PATH)"
     if any(word in text for word in ("imports '", "has no such file", "defines no function")):
         return "mend the import, and see that the file is part of the submission"
-    if isinstance(failure, AirHockeyError) and "Read-only file system" in str(failure):
-        return "write to tempfile.gettempdir(): nothing else can be written in a sandbox"
+    if any(word in text for word in ("Read-only file system", "PermissionError")):
+        return (
+            "write to tempfile.gettempdir(): nothing else can be written in a sandbox; --isolate process lets it write "
+            "wherever you can"
+        )
     return "mend the code at that line; `hockey evaluate --isolate none --jobs 1` runs it under a debugger"

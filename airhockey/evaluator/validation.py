@@ -7,26 +7,21 @@ from typing import Any
 import msgspec
 
 from airhockey.agents.packaging.checkout import PACKAGE, find_checkout
+from airhockey.agents.packaging.edition import edition_of_entry
 from airhockey.agents.packaging.metadata import METADATA, Metadata, interpolation_order, read_metadata
 from airhockey.agents.packaging.packing import contents
-from airhockey.agents.registry import EVERY_ENVIRONMENT
 from airhockey.agents.submission import CONFIG, submission_config
 from airhockey.compat.entries import notes
-from airhockey.errors import ConfigurationError, unknown
+from airhockey.envs.editions import DEFAULT, Edition, edition
+from airhockey.errors import ConfigurationError
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.modes import Mode
 from airhockey.evaluator.pacing import BUSY
 from airhockey.evaluator.play.build_seats import Entrant
 from airhockey.evaluator.trial import GAME, Problem, Trial, slow, try_out
 
-_OFFICIAL_NAMES = {
-    "hit": "7dof-hit",
-    "hit_single": "7dof-hit",
-    "defend": "7dof-defend",
-    "prepare": "7dof-prepare",
-    "tournament_server": GAME,
-}
-"""Names of environments in configurations of 2025, and of the official servers."""
+_SERVER = "tournament_server"
+"""What configurations call a game that the official server asks for."""
 
 
 class Verdict(msgspec.Struct, frozen=True):
@@ -36,6 +31,7 @@ class Verdict(msgspec.Struct, frozen=True):
         left_out: File -> why `hockey package` leaves it out.
         notes: How the submission is played, where that is not obvious.
         conclusion: Plays, or does not because of what; whose cause that is, and what to do. One line.
+        edition: The year whose rules it was tried under.
     """
 
     name: str
@@ -44,9 +40,12 @@ class Verdict(msgspec.Struct, frozen=True):
     left_out: dict[str, str]
     notes: tuple[str, ...] = ()
     conclusion: str = ""
+    edition: str = DEFAULT
 
 
-def validate(path: Path, mode: Mode, limits: Limits, steps: int = 50, python: str | None = None) -> Verdict:
+def validate(
+    path: Path, mode: Mode, limits: Limits, steps: int = 50, python: str | None = None, year: str | None = None
+) -> Verdict:
     """Look at a submission and let it play.
 
     Args:
@@ -55,6 +54,7 @@ def validate(path: Path, mode: Mode, limits: Limits, steps: int = 50, python: st
         limits: What it may use, and how long anybody waits.
         steps: Control steps of each task.
         python: Another interpreter for its process.
+        year: Of the rules; by default those that it was made for.
     """
     name = path.name if path.is_file() else path.resolve().name
     try:
@@ -72,19 +72,22 @@ def validate(path: Path, mode: Mode, limits: Limits, steps: int = 50, python: st
         except ConfigurationError as error:
             remedy = "see the names and sizes above; `hockey package` needs this"
             problems.append(Problem(name, str(error), remedy))
+    rules = edition(year or edition_of_entry(path) or DEFAULT)
     told = list(notes(path))
     if not any(problem.where == CONFIG for problem in problems):
-        tasks, unknown_tasks = _tasks(metadata, config)
+        tasks, unknown_tasks = _tasks(metadata, config, rules)
         problems += unknown_tasks
         if metadata is None:
             where = f"env in {CONFIG}" if "env" in config else f"the usual ones ({CONFIG} names none)"
             told.append(
                 f"the layout is the official one; the tasks are {where}; `hockey package` would want a {METADATA}"
             )
+        if rules.edition != DEFAULT:
+            told.append(f"played under the rules of {rules.edition} (--edition chooses)")
         sides = [(task, 1) for task in tasks] + [(task, 2) for task in tasks if task == GAME]
         for task, side in sides:
             entrant = Entrant(str(path.resolve()), isolate=mode, limits=limits, python=python)
-            outcome = try_out(entrant, task, steps, side)
+            outcome = try_out(entrant, task, steps, side, rules.edition)
             if isinstance(outcome, Trial):
                 trials.append(outcome)
                 problems += slow(outcome)
@@ -95,7 +98,7 @@ def validate(path: Path, mode: Mode, limits: Limits, steps: int = 50, python: st
             "it thinks between its steps, in threads or processes: evaluations pace them as on the robot (--real-time)"
         )
     conclusion = concluded(name, trials, problems)
-    return Verdict(name, tuple(problems), tuple(trials), left_out, tuple(told), conclusion)
+    return Verdict(name, tuple(problems), tuple(trials), left_out, tuple(told), conclusion, rules.edition)
 
 
 def concluded(name: str, trials: list[Trial], problems: list[Problem]) -> str:
@@ -122,20 +125,16 @@ def _cause(problem: Problem) -> str:
     return "the entry's cause"
 
 
-def _tasks(metadata: Metadata | None, config: dict[str, Any]) -> tuple[list[str], list[Problem]]:
+def _tasks(metadata: Metadata | None, config: dict[str, Any], rules: Edition) -> tuple[list[str], list[Problem]]:
     """What a submission plays: what its metadata or its configuration names, else everything of the iiwa."""
-    if metadata is not None:
-        return list(metadata.tasks), []
-    named = config.get("env", ["7dof-hit", "7dof-defend", "7dof-prepare", GAME])
+    file, where = (CONFIG, "env") if metadata is None else (METADATA, "tasks")
+    named = config.get("env", [*rules.tasks_of("7dof"), GAME]) if metadata is None else list(metadata.tasks)
     tasks, problems = list[str](), list[Problem]()
-    for name in named if isinstance(named, list) else [named]:
-        task = _OFFICIAL_NAMES.get(str(name), str(name))
-        if task in EVERY_ENVIRONMENT:
-            tasks.append(task)
-        else:
-            problems.append(
-                Problem(f"env of {CONFIG}", str(unknown("environment", task, EVERY_ENVIRONMENT)), "name one of these")
-            )
+    for name in map(str, named if isinstance(named, list) else [named]):
+        try:
+            tasks.append(GAME if name == _SERVER else rules.counterpart(name))
+        except ConfigurationError as error:
+            problems.append(Problem(f"{where} of {file}", str(error), "name one of these"))
     return list(dict.fromkeys(tasks)), problems
 
 

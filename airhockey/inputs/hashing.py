@@ -20,6 +20,8 @@ TOOLS = frozenset(
     )
 )  # fmt: skip
 """What tools make, and no agent reads."""
+LARGEST, MOST_FILES = 8 << 30, 100_000
+"""What a folder may hold: [bytes] and files. A file may say that it is larger than any disk."""
 RESULTS = ("run.json", "match.json", "tournament.json", "train.json")
 """A folder with one of these is a run's."""
 
@@ -46,18 +48,30 @@ def files_of(folder: Path) -> Iterator[Path]:
     """The files of a folder and its sub-folders that count.
 
     Raises:
-        ConfigurationError: There is a link, a pipe or a device.
+        ConfigurationError: There is a link, a pipe or a device, or more than anybody needs.
     """
+    size = 0
+    for number, file in enumerate(_all_files(folder), start=1):
+        size += file.stat().st_size
+        if size > LARGEST or number > MOST_FILES:
+            raise ConfigurationError(
+                f"{shown(folder)!r} holds more than {LARGEST >> 30} GiB or {MOST_FILES:,} files; "
+                "put there what the agent needs and nothing else"
+            )
+        yield file
+
+
+def _all_files(folder: Path) -> Iterator[Path]:
     with os.scandir(folder) as entries:
         there = sorted(entries, key=lambda entry: entry.name)
     if any(entry.name in RESULTS for entry in there):
         return
     for entry in there:
-        if entry.name in TOOLS or entry.name.endswith((".pyc", ".pyo", ".egg-info")):
+        if entry.name in TOOLS or entry.name.endswith((".pyo", ".egg-info")):
             continue
         kind = entry.stat(follow_symlinks=False).st_mode
         if stat.S_ISDIR(kind):
-            yield from files_of(Path(entry.path))
+            yield from _all_files(Path(entry.path))
         elif stat.S_ISREG(kind):
             yield Path(entry.path)
         else:

@@ -45,3 +45,8 @@ def is_visible(letter: str) -> bool:
 def _number(letter: str) -> str:
     code = ord(letter)
     return f"\\x{code:02x}" if code < 256 else f"\\u{code:04x}" if code < 65536 else f"\\U{code:08x}"
+
+
+def one_line(message: str, most: int = 4000) -> str:
+    """A message as one line, with nothing that a terminal would obey."""
+    return shown(" ".join(message.split()), most)

@@ -8,10 +8,9 @@ those the latest.
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from airhockey.envs import ENVIRONMENTS
 from airhockey.envs.disturbances import Disturbances
-from airhockey.envs.editions import Edition
-from airhockey.evaluator.judging.tasks import CLASSES, OFFICIAL_EPISODES, PHASES, weighted, worst_class
+from airhockey.envs.editions import DEFAULT, Edition, available, edition
+from airhockey.evaluator.judging.tasks import CLASSES, OFFICIAL_EPISODES, weighted, worst_class
 from airhockey.reporting.results import Task
 
 
@@ -28,6 +27,12 @@ class Condition:
     edition: str
     disturbances: str
     profile: Disturbances | None
+
+    @property
+    def name(self) -> str:
+        """The profile's, with the edition unless it is the usual one."""
+        years = [f"edition {self.edition}"] if self.edition in available() and self.edition != DEFAULT else []
+        return ", ".join([self.disturbances, *years])
 
 
 @dataclass(frozen=True)
@@ -119,8 +124,9 @@ def boards(tasks: Iterable[Task]) -> list[Board]:
             profile=manifest.profile if manifest else None,
         )
         if condition not in found:
-            alike = sum(other.disturbances == condition.disturbances for other in found)
-            label = condition.disturbances if not alike else f"{condition.disturbances} (another, {alike + 1})"
+            name = condition.name
+            alike = sum(other.name == name for other in found)
+            label = name if not alike else f"{name} (another, {alike + 1})"
             found[condition] = Board(condition, label)
         found[condition].results.setdefault(task.run.agent, {}).setdefault(task.env, []).append(task)
     return sorted(found.values(), key=lambda board: (-len(board.results), board.label))
@@ -128,10 +134,11 @@ def boards(tasks: Iterable[Task]) -> list[Board]:
 
 def in_order(environments: Collection[str]) -> list[str]:
     """Environments in the order of the challenge, those of the 7-DoF robot first."""
-    known = [env for env in sorted(ENVIRONMENTS, key=lambda env: env[:4], reverse=True) if env in environments]
+    names = [env for year in available() for env in edition(year).environments]
+    known = [env for env in sorted(dict.fromkeys(names), key=lambda env: env[:4] != "7dof") if env in environments]
     return known + sorted(set(environments) - set(known))
 
 
 def phases(rules: Edition) -> dict[str, Mapping[str, float]]:
     """Phase -> weights of its tasks, the 7-DoF robot's first."""
-    return {PHASES[robot]: rules.score_weights[robot] for robot in sorted(rules.score_weights, reverse=True)}
+    return {rules.phases[robot]: rules.score_weights[robot] for robot in sorted(rules.score_weights, reverse=True)}

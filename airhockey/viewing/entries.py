@@ -15,10 +15,12 @@ class Entry:
     Attributes:
         name: What `--episode` calls it.
         load: Reads it.
+        failed: Whether it is of an episode that went wrong.
     """
 
     name: str
     load: Callable[[], Recording]
+    failed: bool = False
 
 
 @dataclass
@@ -53,8 +55,25 @@ class Library:
         shown = ", ".join(names[:8]) + (f", … {names[-1]} ({len(names)} in all)" if len(names) > 8 else "")
         raise ConfigurationError(f"there is no episode {name!r} in {str(self.path)!r}; there are {shown}")
 
-    def choose(self, names: str | None) -> list[Entry]:
-        """The entries of these names, separated by commas; all of them for None."""
+    def choose(self, names: str | None, failed: bool = False) -> list[Entry]:
+        """The entries of these names, separated by commas; all of them for None.
+
+        Args:
+            names: Or None.
+            failed: Only those of episodes that went wrong.
+
+        Raises:
+            ConfigurationError: There is none of a name, or none that went wrong.
+        """
+        chosen = self._named(names)
+        if not failed:
+            return chosen
+        wrong = [entry for entry in chosen if entry.failed]
+        if not wrong:
+            raise ConfigurationError(f"no episode went wrong in {str(self.path)!r} (of {len(chosen)})")
+        return wrong
+
+    def _named(self, names: str | None) -> list[Entry]:
         if names is None:
             return list(self.entries)
         return [self.entries[self.position(name.strip())] for name in names.split(",") if name.strip()]

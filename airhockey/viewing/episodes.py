@@ -6,15 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.envs.editions import ROBOTS, edition
+from airhockey.envs.editions import DEFAULT, ROBOTS, edition
+from airhockey.envs.rendering.scene_view import SceneView
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.recording import Moment, Recording
-from airhockey.viewing.scene_view import SceneView
 
 Array = NDArray[np.float64]
 ACHIEVED = {"hit": ("goal", "goal"), "defend": ("save", "puck stopped"), "prepare": ("prepared", "puck in reach")}
-"""Kind of the moment, and what is said, where a task succeeds; by the last word of its environment's name."""
+"""Kind of the moment, and what is said, where a task succeeds; by the kind of its environment."""
 CONSTRAINTS = "constraints/"
 
 
@@ -60,7 +60,13 @@ class EpisodeNarrator:
 
 
 def episode_recording(
-    name: str, env: str, player: str, trajectory: Mapping[str, Array], outcome: Outcome, title: str = ""
+    name: str,
+    env: str,
+    player: str,
+    trajectory: Mapping[str, Array],
+    outcome: Outcome,
+    title: str = "",
+    year: str = DEFAULT,
 ) -> Recording:
     """What an agent saw of an episode, as a recording.
 
@@ -71,9 +77,10 @@ def episode_recording(
         trajectory: `true_observations` or `observations` (T + 1, d), in the robot frame; `constraints/…` if there are any.
         outcome: How it ended.
         title: One line; made of the name where it is empty.
+        year: The edition of the environment.
     """
     seen = np.asarray(trajectory["true_observations" if "true_observations" in trajectory else "observations"])
-    rules = edition().environment(env)
+    rules = edition(year).environment(env)
     robot = ROBOTS[rules.robot]
     n, steps = robot.n_joints, len(seen) - 1
     base = np.array(robot.base_positions[0])
@@ -81,16 +88,15 @@ def episode_recording(
     joints = seen[:, None, 6 : 6 + n]
     if rules.robots == 2:
         tips = seen[:, 6 + 2 * n : 9 + 2 * n] + base
-        joints = np.concatenate([joints, SceneView(env).follow_tips(1, tips)[:, None]], axis=1)
+        joints = np.concatenate([joints, SceneView(env, year).follow_tips(1, tips)[:, None]], axis=1)
     values = {key.removeprefix(CONSTRAINTS): a for key, a in trajectory.items() if key.startswith(CONSTRAINTS)}
-    what, ending = _ending(env, outcome)
+    what, ending = _ending(rules.kind, outcome)
     moments = violations(values, 0)
     if what:
         moments.append(Moment(steps, what, 0 if what in ("save", "goal", "prepared") else None, ending))
     narrator = EpisodeNarrator(title or f"{env}, episode {name}", player, steps, ending, violated_names(values, steps))
-    return Recording(
-        name, narrator.title, env, puck, seen[:, 3:6], joints, narrator, tuple(sorted(moments, key=lambda m: m.step))
-    )
+    moments.sort(key=lambda moment: moment.step)
+    return Recording(name, narrator.title, env, puck, seen[:, 3:6], joints, narrator, tuple(moments), edition=year)
 
 
 def violations(values: Mapping[str, Array], who: int) -> list[Moment]:
@@ -117,11 +123,11 @@ def violated_names(values: Mapping[str, Array], steps: int) -> list[str]:
     return names
 
 
-def _ending(env: str, outcome: Outcome) -> tuple[str, str]:
+def _ending(kind: str, outcome: Outcome) -> tuple[str, str]:
     """Kind of the last moment and what is said about it; empty where nothing is known."""
     if outcome.error is not None:
         return "forfeit", f"the agent failed: {outcome.error}"
     if outcome.success is None:
         return "", ""
-    achieved, said = ACHIEVED[env.rpartition("-")[2]]
+    achieved, said = ACHIEVED[kind]
     return (achieved, said) if outcome.success else ("missed", "not achieved")

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.editions import DEFAULT
 from airhockey.envs.specs import CONTROL_PERIOD, IIWA
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.analysis.shots import shots_of
@@ -95,6 +96,7 @@ def game_recording(name: str, film: Array, record: GameRecord | None) -> Recordi
     return Recording(
         name, f"{title}: {players[0]} - {players[1]}", "tournament",
         film[:, :3], film[:, 3:6], joints, narrator, tuple(moments), first_step=1,
+        edition=record.edition if record else DEFAULT,
     )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.envs import ENVIRONMENTS
+from airhockey.envs.editions import DEFAULT, edition_of_names
 from airhockey.envs.specs import IIWA
 from airhockey.errors import ConfigurationError
 from airhockey.viewing.entries import Entry, Library
@@ -32,7 +32,8 @@ ADMITTED = frozenset(
     | {("numpy", "ndarray"), ("numpy", "dtype"), ("_codecs", "encode")}
 )
 """What an official dataset is made of."""
-ENVIRONMENT_OF_WIDTH = {12: "3dof-hit", 20: "7dof-defend", 23: "7dof-hit", 46: "tournament"}
+GAME = "tournament"
+ENVIRONMENT_OF_WIDTH = {12: "3dof-hit", 20: "7dof-defend", 23: "7dof-hit", 46: GAME}
 """An environment whose observations are this long, for datasets outside a folder named after theirs; the scene is the same."""
 _FIELDS = 6
 
@@ -97,7 +98,8 @@ def _add(library: Library, path: Path, several: bool) -> None:
     except (ValueError, IndexError) as error:
         raise ConfigurationError(f"{str(path)!r} is not a dataset: {error}") from error
     folder = path.parent.name
-    env = folder if folder in ENVIRONMENTS else ENVIRONMENT_OF_WIDTH.get(width)
+    year = edition_of_names((folder,))
+    env = folder if year is not None or folder == GAME else ENVIRONMENT_OF_WIDTH.get(width)
     if env is None:
         known = ", ".join(str(width) for width in ENVIRONMENT_OF_WIDTH)
         raise ConfigurationError(f"{str(path)!r} has observations of {width} numbers; environments have {known}")
@@ -105,14 +107,14 @@ def _add(library: Library, path: Path, several: bool) -> None:
         library.notes.append(f"which environment {path.name} is of is not known; its observations look like {env}'s")
     for index, seen in enumerate(episodes):
         name = f"{env}/{index}" if several else str(index)
-        library.entries.append(Entry(name, _loader(name, env, seen)))
+        library.entries.append(Entry(name, _loader(name, env, seen, year or DEFAULT)))
 
 
-def _loader(name: str, env: str, seen: Array) -> Callable[[], Recording]:
+def _loader(name: str, env: str, seen: Array, year: str) -> Callable[[], Recording]:
     def load() -> Recording:
-        if env == "tournament":
+        if env == GAME:
             return game_recording(name, in_world(seen), None)
-        return episode_recording(name, env, "recorded agent", {"observations": seen}, Outcome())
+        return episode_recording(name, env, "recorded agent", {"observations": seen}, Outcome(), year=year)
 
     return load
 

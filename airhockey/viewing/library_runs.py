@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+from airhockey.evaluator.analysis.failures import causes_of
 from airhockey.evaluator.runs.reader import Run, reading_errors
 from airhockey.evaluator.runs.records import EpisodeRecord
 from airhockey.evaluator.runs.trajectories import read_episode
@@ -17,7 +18,8 @@ def add_run(library: Library, run: Run) -> None:
     for record in (record for env in run.environments for record in run.of(env) if record.job in run.stored):
         if record.steps:
             name = f"{record.env}/{record.index}" if several else str(record.index)
-            library.entries.append(Entry(name, _loader(name, run.stored[record.job], record, run.agent)))
+            load = _loader(name, run.stored[record.job], record, run.agent)
+            library.entries.append(Entry(name, load, failed=bool(causes_of(record))))
         else:
             library.notes.append(f"episode {record.index} of {record.env} has no steps: {record.error}")
     if run.manifest is not None:
@@ -32,6 +34,8 @@ def _loader(name: str, file: Path, record: EpisodeRecord, player: str) -> Callab
         with reading_errors(file):
             arrays = read_episode(file, record.env, record.index)
         title = f"{record.env}, episode {record.index}"
-        return episode_recording(name, record.env, player, arrays, Outcome(record.success, record.error), title)
+        return episode_recording(
+            name, record.env, player, arrays, Outcome(record.success, record.error), title, record.edition
+        )
 
     return load

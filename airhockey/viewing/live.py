@@ -7,6 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs.disturbances import load_disturbances
+from airhockey.envs.editions import edition
+from airhockey.envs.rendering.marks import TARGETS, Mark, path, target
+from airhockey.envs.rendering.scene_view import SceneView
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.errors import AirHockeyError
 from airhockey.evaluator.play import seeding
@@ -18,9 +21,7 @@ from airhockey.evaluator.runs.records import Job, Options
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.episodes import ACHIEVED
 from airhockey.viewing.games import LOOKED_AT, NEWS_STEPS, latest, moment_of
-from airhockey.viewing.marks import TARGETS, Mark, path, target
 from airhockey.viewing.playback import predicted_path
-from airhockey.viewing.scene_view import SceneView
 
 Array = NDArray[np.float64]
 AHEAD = 0.15
@@ -105,7 +106,7 @@ class LiveTask:
             return f"the agent failed: {self._seat.failure}"
         if not self._rollout.over and self.step < self.steps:
             return ""
-        _, achieved = ACHIEVED[self._name.rpartition("-")[2]]
+        _, achieved = ACHIEVED[edition(self._options.edition).environment(self._name).kind]
         return achieved if self._rollout.info["success"] else "not achieved"
 
 

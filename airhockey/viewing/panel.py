@@ -7,9 +7,9 @@ from mujoco.studio import messages, plugin, ux
 from mujoco.studio.app import inputs
 from mujoco.studio.dear_imgui import dear_imgui as imgui
 
+from airhockey.envs.rendering.camera import look_from_above, look_from_stands
+from airhockey.envs.rendering.marks import Mark, geoms
 from airhockey.viewing.caption import Caption
-from airhockey.viewing.marks import Mark, geoms
-from airhockey.viewing.pictures import look_from_above, look_from_stands
 
 Color = tuple[float, float, float]
 INK: Color = (0.93, 0.94, 0.96)

@@ -7,12 +7,12 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.rendering.marks import PREDICTED, Mark, path
+from airhockey.envs.rendering.scene_view import SceneView
 from airhockey.envs.specs import TABLE
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.entries import Entry
-from airhockey.viewing.marks import PREDICTED, Mark, path
 from airhockey.viewing.recording import Recording
-from airhockey.viewing.scene_view import SceneView
 from airhockey.viewing.video import trail
 
 Array = NDArray[np.float64]
@@ -72,7 +72,7 @@ class RecordedPlayback:
 
     def __init__(self, entries: Sequence[Entry], episode: int = 0) -> None:
         self._entries = list(entries)
-        self._scene_views: dict[str, SceneView] = {}
+        self._scene_views: dict[tuple[str, str], SceneView] = {}
         self.begin(episode)
 
     @property
@@ -84,10 +84,10 @@ class RecordedPlayback:
         """See `Playback`."""
         self.episode = episode % len(self._entries)
         self._recording: Recording = self._entries[self.episode].load()
-        env = self._recording.env
-        if env not in self._scene_views:
-            self._scene_views[env] = SceneView(env)
-        self.scene_view, self.steps = self._scene_views[env], self._recording.steps
+        scene = self._recording.env, self._recording.edition
+        if scene not in self._scene_views:
+            self._scene_views[scene] = SceneView(*scene)
+        self.scene_view, self.steps = self._scene_views[scene], self._recording.steps
         self.seek(0)
 
     def advance(self) -> bool:

@@ -6,6 +6,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.editions import DEFAULT
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.viewing.caption import Caption
 
@@ -51,6 +52,7 @@ class Recording:
         joints: Joint positions, in [rad]. Shape (T, robots, n).
         moments: What happened, in order.
         narrator: Captions.
+        edition: The year of its rules.
         first_step: The step that the first row shows: 0 for the start, 1 for the end of the first step.
     """
 
@@ -63,6 +65,7 @@ class Recording:
     narrator: Narrator
     moments: tuple[Moment, ...] = field(default=())
     first_step: int = 0
+    edition: str = DEFAULT
 
     @property
     def steps(self) -> int:

@@ -15,7 +15,7 @@ from airhockey.viewing.recording import Recording
 from airhockey.viewing.video_writer import MOST_GIF_FRAMES, VideoWriter, check_video, open_video
 
 if TYPE_CHECKING:
-    from airhockey.viewing.marks import Mark
+    from airhockey.envs.rendering.marks import Mark
 
 OnFrame = Callable[[int, int], None]
 """Called with the frames that are done, and with how many there will be as far as that is known."""
@@ -77,7 +77,7 @@ def write_video(path: Path, entries: Sequence[Entry], options: VideoOptions, on_
         ConfigurationError: The video cannot be written, or there is nothing to show in it.
         MissingDependencyError: Rendering or writing videos needs something that is not installed.
     """
-    from airhockey.viewing.offscreen import choose_backend
+    from airhockey.envs.rendering.offscreen import choose_backend
 
     check_video(path, options.width, options.height, options.fps)
     choose_backend()
@@ -107,11 +107,11 @@ def write_video(path: Path, entries: Sequence[Entry], options: VideoOptions, on_
 def _render(
     writer: VideoWriter, recording: Recording, steps: Sequence[int], options: VideoOptions, count: Callable[[int], None]
 ) -> None:
+    from airhockey.envs.rendering.camera import Camera
+    from airhockey.envs.rendering.scene_view import SceneView
     from airhockey.viewing.overlay import Overlay
-    from airhockey.viewing.pictures import Camera
-    from airhockey.viewing.scene_view import SceneView
 
-    scene_view, overlay = SceneView(recording.env), Overlay(options.width, options.height)
+    scene_view, overlay = SceneView(recording.env, recording.edition), Overlay(options.width, options.height)
     with Camera(scene_view, options.width, options.height, options.inset, options.quality) as camera:
         for k, step in enumerate(steps, start=1):
             row = recording.row(step)
@@ -124,7 +124,7 @@ def _render(
 
 def trail(recording: Recording, row: int) -> "list[Mark]":
     """Where the puck came from, fading, back to the last serve at most."""
-    from airhockey.viewing import marks
+    from airhockey.envs.rendering import marks
 
     points = recording.puck[max(0, row - TRAIL_STEPS) : row + 1, :2][::-1]
     jumps = np.flatnonzero(np.hypot(*np.diff(points, axis=0).T) > 0.2)

@@ -1,15 +1,13 @@
 """MuJoCo's own viewer, in the browser or in a window, with the playback that it shows."""
 
-import contextlib
-import os
-import sys
 import threading
 import time
 import webbrowser
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
-from airhockey.errors import ConfigurationError, MissingDependencyError
+from airhockey.envs.rendering.display import has_display, needs_studio
+from airhockey.errors import ConfigurationError
 from airhockey.viewing.keys import typed_keys
 from airhockey.viewing.playback import Playback
 from airhockey.viewing.playback_controls import KEYS, PlaybackControls
@@ -93,9 +91,12 @@ def state_of(controls: PlaybackControls) -> Any:
 
 def _launch_web(playback: Playback, host: str, port: int, open_browser: bool) -> tuple[Any, str, Any]:
     """The web viewer; gives its handle, its address and what collects the commands of panel and keys."""
-    with _needs_studio():
-        from airhockey.viewing.web import launch
-    handle, address, commands = launch(TITLE, playback.scene_view.model, playback.scene_view.data, host, port)
+    with needs_studio():
+        from airhockey.envs.rendering.web import launch
+        from airhockey.viewing.key_commands import KeyCommands
+        from airhockey.viewing.panel import Panel
+    commands, view = KeyCommands(), playback.scene_view
+    handle, address = launch(TITLE, (view.model, view.data), host, port, [Panel()], [commands])
     if open_browser:
         threading.Thread(target=webbrowser.open, args=(address,), kwargs={"new": 2}, daemon=True).start()
     return handle, address, commands
@@ -103,9 +104,9 @@ def _launch_web(playback: Playback, host: str, port: int, open_browser: bool) ->
 
 def _launch_window(playback: Playback) -> tuple[Any, str, Any]:
     """The native viewer."""
-    if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+    if not has_display():
         raise ConfigurationError("there is no display for a window: leave out --window and watch in a browser")
-    with _needs_studio():
+    with needs_studio():
         from mujoco.studio import launch_native, viewer_protocol
 
         from airhockey.viewing.key_commands import KeyCommands
@@ -114,13 +115,3 @@ def _launch_window(playback: Playback) -> tuple[Any, str, Any]:
     handle = launch_native.launch(viewer_protocol.ViewerConfig(title=TITLE), plugins=[Panel(), commands])
     handle.set_model(playback.scene_view.model, data=playback.scene_view.data)
     return handle, "", commands
-
-
-@contextlib.contextmanager
-def _needs_studio() -> Iterator[None]:
-    try:
-        yield
-    except ImportError as error:
-        raise MissingDependencyError(
-            f"MuJoCo's viewer is not installed ({error}): pip install 'mujoco==4.0.*'"
-        ) from error

@@ -29,7 +29,8 @@ class Base:
         self.agent.episode_start()
     def draw_action(self, observation):
         self.steps += 1
-        self.cheat(observation)
+        if self.steps % 50 < 3:
+            self.cheat(observation)
         return self.agent.draw_action(observation)
     def cheat(self, observation):
         pass
@@ -176,7 +177,8 @@ class Agent(Base):
                     os.set_blocking(fd, True)
                 except OSError:
                     pass
-        compute(0.05)
+        if self.steps % 50 < 3:
+            compute(0.05)
         return action
 """),
     "replies written by a thread": Cheat("""
@@ -220,6 +222,55 @@ class Agent(Base):
         for _ in range(20):
             sum(range(200_000))
 """),
+    "a child that answers in its place": Cheat("""
+class Agent(Base):
+    def cheat(self, observation):
+        if self.steps == 2:
+            child = os.fork()
+            if child:
+                os.waitpid(child, 0)
+                os._exit(0)
+        if self.steps > 2:
+            compute(0.06)
+"""),
+    "many short children": Cheat("""
+class Agent(Base):
+    def cheat(self, observation):
+        for _ in range(24):
+            child = os.fork()
+            if child == 0:
+                compute(0.003)
+                os._exit(0)
+            os.waitpid(child, 0)
+"""),
+    "work at the lowest priority": Cheat("""
+class Agent(Base):
+    def __init__(self, env_info, **kwargs):
+        super().__init__(env_info, **kwargs)
+        os.nice(19)
+    def cheat(self, observation):
+        compute(0.06)
+"""),
+    "work whenever a child is born": Cheat("""
+class Agent(Base):
+    def __init__(self, env_info, **kwargs):
+        super().__init__(env_info, **kwargs)
+        os.register_at_fork(after_in_child=lambda: compute(0.06))
+    def cheat(self, observation):
+        child = os.fork()
+        if child == 0:
+            os._exit(0)
+        os.waitpid(child, 0)
+"""),
+    "work in a destructor": Cheat("""
+class Late:
+    def __del__(self):
+        compute(0.06)
+class Agent(Base):
+    def draw_action(self, observation):
+        late = Late()
+        return self.agent.draw_action(observation)
+"""),
     "computing in preprocessors": Cheat("""
 class Agent(Base):
     def __init__(self, env_info, **kwargs):
@@ -249,6 +300,27 @@ class Agent(Base):
         super().episode_start()
         time.sleep(40.0)
 """,
+    "an agent that stops itself": """
+class Agent(Base):
+    def cheat(self, observation):
+        os.kill(os.getpid(), signal.SIGSTOP)
+""",
+    "an agent that stops its whole group": """
+class Agent(Base):
+    def cheat(self, observation):
+        os.killpg(0, signal.SIGSTOP)
+""",
+    "an agent that closes every descriptor and waits": """
+class Agent(Base):
+    def cheat(self, observation):
+        os.closerange(0, 256)
+        time.sleep(1000)
+""",
+    "an agent that is killed and killed again": """
+class Agent(Base):
+    def episode_start(self):
+        os.kill(os.getpid(), signal.SIGKILL)
+""",
     "steps just within the patience": """
 class Agent(Base):
     def cheat(self, observation):
@@ -256,6 +328,54 @@ class Agent(Base):
 """,
 }
 """Entries that make others wait: with a patience of 4 s, all of it must end soon, and be on record."""
+ACTIONS = {
+    "no action at all": "None",
+    "objects": "np.array([[object()] * 3] * 2, dtype=object)",
+    "not a number": "np.full((2, 3), np.nan)",
+    "infinite": "np.full((2, 3), np.inf)",
+    "complex": "np.ones((2, 3)) * 1j",
+    "truth values": "np.ones((2, 3), dtype=bool)",
+    "text": "np.array([['1.0'] * 3] * 2)",
+    "dates": "np.zeros((2, 3), dtype='datetime64[s]')",
+    "records": "np.zeros((2, 3), dtype=[('a', float)])",
+    "an array without end": "np.broadcast_to(np.float64(0), (2, 10**12))",
+    "gigabytes": "np.zeros((2, 3, 10**7))",
+    "many dimensions": "np.zeros((1,) * 30)",
+    "a shape of nothing": "np.zeros((0, 3))",
+    "an iterator": "iter(range(10**9))",
+    "a list that holds itself": "(lambda one: (one.append(one), one)[1])([])",
+    "an array that is another each time it is asked for": "Shifty()",
+    "an array that raises": "Raising()",
+    "an array that ends the program": "Ending()",
+    "numbers beyond float64": "np.full((2, 3), np.longdouble('1e4000'))",
+    "whole numbers beyond float64": "[[10**400] * 3] * 2",
+    "a file that is not there any more": "gone()",
+}
+"""Actions that are none, as an expression; each fails the agent, and nobody else."""
+ODD = """
+import tempfile
+class Shifty:
+    count = 0
+    def __array__(self, *given, **named):
+        Shifty.count += 1
+        return np.zeros((Shifty.count, 7, 9))
+class Raising:
+    def __array__(self, *given, **named):
+        raise BaseException("\\x1b[2J[red]")
+class Ending:
+    def __array__(self, *given, **named):
+        sys.exit(0)
+def gone():
+    with tempfile.NamedTemporaryFile() as file:
+        file.write(bytes(4096)); file.flush()
+        there = np.memmap(file.name, dtype=float, mode="r+", shape=(2, 3))
+        os.truncate(file.name, 0)
+        return there
+class Agent(Base):
+    def draw_action(self, observation):
+        self.steps += 1
+        return ACTION if self.steps == 3 else self.agent.draw_action(observation)
+"""
 ORACLE = """
 import zlib
 from airhockey import envs
@@ -295,15 +415,19 @@ class Agent(Base):
 """
 
 
+SEEDS = {"from its own seed, --seed 7": "7", "from its own seed, --seed random": "random"}
+
+
 def attack(sample: bool) -> Iterator[Verdict]:
     """Play with each cheat, and look at what is on record."""
-    for name, cheat in list(TIME.items())[: 3 if sample else None]:
-        yield _played("cheats with time", name, cheat.code, cheat.clock)
-    if not sample:
-        for name, code in WAITS.items():
-            yield _waited("entries that make others wait", name, code)
-    for seed in ("7", "random"):
-        yield _foreseen("knowing the future", f"from its own seed, --seed {seed}", seed)
+    for name in product.wanted(TIME)[: 1 if sample else None]:
+        yield _played("cheats with time", name, TIME[name].code, TIME[name].clock)
+    for name in () if sample else product.wanted(WAITS):
+        yield _waited("entries that make others wait", name, WAITS[name])
+    for name in ("an array that ends the program",) if sample else product.wanted(ACTIONS):
+        yield _odd("actions that are none", name, ODD.replace("ACTION", ACTIONS[name]))
+    for name in () if sample else product.wanted(SEEDS):
+        yield _foreseen("knowing the future", name, SEEDS[name])
 
 
 def _played(kind: str, name: str, code: str, clock: str) -> Verdict:
@@ -334,6 +458,21 @@ def _waited(kind: str, name: str, code: str) -> Verdict:
         bad = trouble(kind, name, done)
         if bad is not None:
             return bad
+        return Verdict(kind, name, HELD if done.status == 3 else ESCAPE, product.last_line(done))
+
+
+def _odd(kind: str, name: str, code: str) -> Verdict:
+    with product.fresh_place() as place:
+        entry = make_entry(place.path, code)
+        done = place.hockey(
+            *("evaluate", "--env", "3dof-hit", "--agent", str(entry), "--episodes", "1", "--jobs", "1"),
+            *("--seed", "1", "--quiet", "--out", "run"),
+        )
+        bad = trouble(kind, name, done)
+        if bad is not None:
+            return bad
+        if "\x1b[2J" in done.out + done.err:
+            return Verdict(kind, name, ESCAPE, "control sequences reached the terminal")
         return Verdict(kind, name, HELD if done.status == 3 else ESCAPE, product.last_line(done))
 
 

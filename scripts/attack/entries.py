@@ -2,8 +2,10 @@
 
 import io
 import os
+import socket
 import stat
 import struct
+import tarfile
 import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -127,6 +129,62 @@ def _both(*_: object) -> None:
     """Two things in one expression."""
 
 
+def _sparse(entry: Path) -> None:
+    (entry / "weights.bin").touch()
+    os.truncate(entry / "weights.bin", 9 << 30)
+
+
+def _socket(entry: Path) -> None:
+    with socket.socket(socket.AF_UNIX) as one:
+        before = os.getcwd()
+        os.chdir(entry)
+        one.bind("socket")
+        os.chdir(before)
+
+
+def _overlapping(raw: bytes) -> bytes:
+    """Let every file of the directory be the first one."""
+    changed, start = bytearray(raw), 0
+    while (start := raw.find(b"PK\x01\x02", start)) >= 0:
+        struct.pack_into("<I", changed, start + 42, 0)
+        start += 4
+    return bytes(changed)
+
+
+def _encrypted(raw: bytes) -> bytes:
+    """Say of every file that it is."""
+    changed = bytearray(raw)
+    for signature, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
+        start = 0
+        while (start := raw.find(signature, start)) >= 0:
+            changed[start + offset] |= 1
+            start += 4
+    return bytes(changed)
+
+
+def _sizes_that_lie(raw: bytes) -> bytes:
+    """Say of every file that it is empty once it is unpacked."""
+    changed, start = bytearray(raw), 0
+    while (start := raw.find(b"PK\x01\x02", start)) >= 0:
+        struct.pack_into("<I", changed, start + 24, 0)
+        start += 4
+    return bytes(changed)
+
+
+def _tar(place: Path) -> Path:
+    path = place / "entry.tar"
+    with tarfile.open(path, "w") as archive:
+        for name, kind, target in (
+            ("link", tarfile.LNKTYPE, "/etc/passwd"),
+            ("disk", tarfile.BLKTYPE, ""),
+            ("../out", tarfile.REGTYPE, ""),
+        ):
+            info = tarfile.TarInfo(name)
+            info.type, info.linkname = kind, target
+            archive.addfile(info)
+    return path
+
+
 def _deep(entry: Path) -> None:
     here = entry
     for _ in range(120):
@@ -144,7 +202,7 @@ ENTRIES: dict[str, Make] = {
     "metadata: a tag of Python": _folder("name: !!python/object/apply:os.system ['touch owned']\ntasks: [3dof-hit]\n"),
     "metadata: a huge number": _folder(NOBODY.replace("order: 3", "order: " + "9" * 5000)),
     "metadata: a huge number by sixties": _folder(NOBODY.replace("order: 3", "order: 1" + ":59" * 3000)),
-    "metadata: an impossible date": _folder(NOBODY.replace("0.1.0", "2023-13-45")),
+    "metadata: an impossible date": _folder(NOBODY.replace("order: 3", "order: 2023-13-45")),
     "metadata: a name with letters that turn around": _folder(NOBODY.replace("name: entry", f'name: "{BIDI}"')),
     "metadata: a name with control characters": _folder(NOBODY.replace("name: entry", r'name: "\e[2Jentry"')),
     "metadata: a name with markup": _folder(NOBODY.replace("name: entry", 'name: "[red]<script>"')),
@@ -167,6 +225,14 @@ ENTRIES: dict[str, Make] = {
     "metadata: an order that is not a number": _folder(NOBODY.replace("order: 3", "order: .nan")),
     "metadata: authors that are no list": _folder(NOBODY + "authors: {a: b}\n"),
     "metadata: empty": _folder(""),
+    "metadata: a name of ten thousand letters": _folder(NOBODY.replace("name: entry", "name: " + "e" * 10_000)),
+    "metadata: a name that is a path": _folder(NOBODY.replace("name: entry", "name: ../../entry")),
+    "metadata: a merge key": _folder("base: {name: entry}\n<<: {name: other}\n" + NOBODY),
+    "metadata: a file without end": _with(lambda entry: os.truncate(entry / "submission.yaml", 1 << 33)),
+    "configuration: a tag of Python": _folder(config="speed: !!python/object/apply:os.getcwd []\n"),
+    "configuration: aliases that unfold to gigabytes": _folder(config=LAUGHS),
+    "configuration: a list": _folder(config="- 1\n- 2\n"),
+    "configuration: not UTF-8": _folder(config=b"\xff\xfe: 1\n"),
     "metadata: a folder": _with(
         lambda entry: _both((entry / "submission.yaml").unlink(), (entry / "submission.yaml").mkdir())
     ),
@@ -189,6 +255,22 @@ ENTRIES: dict[str, Make] = {
             "self.steps = 0\n        import multiprocessing as mp\n        mp.get_context('spawn').Process(target=print).start()",
         )
     ),
+    "builder: ends the program": _folder(builder="import sys\nsys.exit(0)\n"),
+    "builder: is interrupted": _folder(builder="raise KeyboardInterrupt\n"),
+    "builder: raises what no text can say": _folder(
+        builder="class E(BaseException):\n    def __str__(self):\n        raise self\nraise E\n"
+    ),
+    "builder: closes every descriptor": _folder(builder="import os\nos.closerange(0, 256)\n" + GOOD),
+    "builder: recurses without end": _folder(builder="def f():\n    f()\nf()\n"),
+    "builder: crashes the interpreter": _folder(builder="import ctypes\nctypes.string_at(0)\n"),
+    "builder: takes all memory": _folder(builder="x = bytearray(1 << 60)\n"),
+    "builder: its agent lacks draw_action": _folder(
+        builder="class A:\n    def episode_start(self):\n        pass\ndef build_agent(env_info, **k):\n    return A()\n"
+    ),
+    "builder: lies about itself": _folder(
+        builder="class A:\n    def __getattribute__(self, name):\n        raise ValueError('\\x1b[2J' + name)\n"
+        "def build_agent(env_info, **k):\n    return A()\n"
+    ),
     "builder: is not there": _with(lambda entry: (entry / "agent_builder.py").unlink()),
     "folder: a link to a file of the host": _with(_link("/etc/passwd")),
     "folder: a link to a folder of the host": _with(_link("/etc", "data")),
@@ -206,6 +288,18 @@ ENTRIES: dict[str, Make] = {
         lambda entry: Path(os.fsdecode(os.fsencode(entry) + b"/\xff")).write_text("x")
     ),
     "folder: very deep": _with(_deep),
+    "folder: a file larger than any disk": _with(_sparse),
+    "folder: a builder larger than any disk": _with(lambda entry: os.truncate(entry / "agent_builder.py", 1 << 34)),
+    "folder: a socket": _with(_socket),
+    "folder: a builder that is a pipe": _with(
+        lambda entry: _both((entry / "agent_builder.py").unlink(), os.mkfifo(entry / "agent_builder.py"))
+    ),
+    "folder: a configuration that is a pipe": _with(
+        lambda entry: _both((entry / "agent_config.yml").unlink(), os.mkfifo(entry / "agent_config.yml"))
+    ),
+    "folder: metadata that is a pipe": _with(
+        lambda entry: _both((entry / "submission.yaml").unlink(), os.mkfifo(entry / "submission.yaml"))
+    ),
     "archive: climbs out": _archive(("../../out.txt", b"x")),
     "archive: absolute": _archive(("/tmp/out.txt", b"x")),
     "archive: of Windows": _archive(("C:\\out.txt", b"x")),
@@ -223,14 +317,30 @@ ENTRIES: dict[str, Make] = {
     "archive: no zip file at all": _archive(change=lambda raw: b"\x7fELF" + raw[:50][::-1]),
     "archive: empty": _archive(good=False),
     "archive: a bomb": _bomb,
+    "archive: files that lie over each other": _archive(("x", bytes(1000)), ("y", bytes(1000)), change=_overlapping),
+    "archive: encrypted": _archive(("x", b"1"), change=_encrypted),
+    "archive: sizes that lie": _archive(("x", bytes(1000)), change=_sizes_that_lie),
+    "archive: a name longer than any file system's": _archive(("e" * 300, b"x")),
+    "archive: a path longer than any file system's": _archive(("/".join(["e" * 200] * 40), b"x")),
+    "archive: a pipe": _archive((_info("pipe", stat.S_IFIFO | 0o666), b"")),
+    "archive: a link to a folder and a file through it": _archive(
+        (_info("out", LINK), b"/tmp"), ("out/owned.txt", b"x")
+    ),
+    "archive: a name of Windows' devices and streams": _archive(("con:stream", b"x")),
+    "archive: a zero byte in a name": _archive(("a/b", b"x"), change=lambda raw: raw.replace(b"a/b", b"a\0b")),
+    "archive: dots only": _archive(("a/./../../b", b"x")),
+    "archive: of another kind": _tar,
     "archive: seventy thousand files": _many,
 }
 
 
+SAMPLE = ("metadata: aliases that unfold to gigabytes", "archive: a link to a folder and a file through it")
+
+
 def attack(sample: bool) -> Iterator[Verdict]:
     """Hand every bad entry to the commands that read entries."""
-    chosen = list(ENTRIES.items())[:: 16 if sample else 1]
-    for name, make in chosen:
+    for name in SAMPLE if sample else product.wanted(ENTRIES):
+        make = ENTRIES[name]
         with product.fresh_place() as place:
             entry = make(place.path)
             before = _outside(place.path, entry)

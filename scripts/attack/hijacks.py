@@ -18,8 +18,11 @@ FOREIGN = (
 )  # fmt: skip
 PLANTED = """
 import os, sys
-with open({mark!r}, "a") as file:
-    file.write("{name} in %d: %s\\n" % (os.getpid(), " ".join(sys.argv)))
+try:
+    with open({mark!r}, "a") as file:
+        file.write("{name} in %d: %s\\n" % (os.getpid(), " ".join(sys.argv)))
+except OSError:  # in a sandbox, where it may be imported: the entry's folder is on the path of its own process
+    pass
 _paths = list(sys.path)
 sys.path[:] = [p for p in sys.path if p not in ("", os.getcwd(), os.path.dirname(os.path.abspath(__file__)))]
 sys.modules.pop("{name}", None)
@@ -86,12 +89,13 @@ SERVERS = {
 
 def attack(sample: bool) -> Iterator[Verdict]:
     """Call every command in a folder full of planted modules."""
-    for name in ("match",) if sample else COMMANDS:
+    for name in ("package",) if sample else product.wanted(COMMANDS):
         with _planted() as (place, mark):
             for command in COMMANDS[name]:
                 done = place.hockey(*command)
-                yield trouble(KIND, name, done) or _judged(" ".join(command[:2]), mark, product.last_line(done))
-    for name in () if sample else SERVERS:
+                called = " ".join(command)
+                yield trouble(KIND, called, done) or _judged(called, mark, product.last_line(done))
+    for name in () if sample else product.wanted(SERVERS):
         with _planted() as (place, mark):
             place.hockey(*MATCH, "game")
             process = place.start(product.hockey(*SERVERS[name]))

@@ -229,6 +229,76 @@ def _opens_for_writing(place: str) -> bool:
     return True
 
 
+@attempt
+def overwrite_a_program_of_the_host() -> object:
+    for program in ("/proc/1/exe", "/proc/self/exe"):
+        try:
+            return os.open(program, os.O_RDWR)
+        except OSError:
+            continue
+    return None
+
+
+@attempt
+def read_memory_of_the_kernel() -> object:
+    for place in (
+        "/proc/kcore",
+        "/proc/kmsg",
+        "/dev/mem",
+        "/dev/kmem",
+        "/dev/kmsg",
+        "/sys/kernel/debug",
+        "/proc/vmallocinfo",
+    ):
+        try:
+            return f"{place}: {os.read(os.open(place, os.O_RDONLY | os.O_NONBLOCK), 16)!r}"
+        except OSError:
+            continue
+    with Path("/proc/kallsyms").open() as symbols:
+        return [line for line, _ in zip(symbols, range(50), strict=False) if int(line.split()[0], 16)]
+
+
+@attempt
+def change_its_cgroup() -> object:
+    places = [
+        Path("/sys/fs/cgroup"),
+        *(
+            Path(line.split()[4])
+            for line in Path("/proc/self/mountinfo").read_text().splitlines()
+            if " - cgroup" in line
+        ),
+    ]
+    return [str(file) for place in places for file in place.rglob("*") if file.is_file() and os.access(file, os.W_OK)]
+
+
+@attempt
+def see_what_tools_left_in_its_folder() -> object:
+    """Nobody counts these files, so nobody may read them: they could be changed while a run waits."""
+    root = Path(__file__).parents[1]
+    return [str(file) for name in ("build", "runs", "__pycache__", ".git") for file in root.glob(f"**/{name}/*")]
+
+
+@attempt
+def write_where_tools_leave_things() -> object:
+    root = Path(__file__).parents[1]
+    return [
+        str(place)
+        for name in ("build", "runs", "__pycache__")
+        for place in root.glob(f"**/{name}")
+        if _can_write(str(place))
+    ]
+
+
+@attempt
+def find_the_seed_in_the_environment() -> object:
+    told = [
+        Path("/proc/self/environ").read_text(),
+        Path("/proc/self/cmdline").read_text(),
+        Path("/proc/1/cmdline").read_text(),
+    ]
+    return [word for text in told for word in text.split("\0") if "seed" in word.lower() or TOLD["token"] in word]
+
+
 # ---- mounts and namespaces
 
 
@@ -609,6 +679,67 @@ def write_memory_of_process_1() -> object:
 
 
 # ---- resources; each gets as much as it can and says how much that was
+
+
+@attempt
+def make_files_without_end() -> object:
+    """Empty ones cost no space where files lie, but the kernel's memory."""
+    made = 0
+    for place in (tempfile.gettempdir(), "/dev/shm"):
+        folder = os.open(place, os.O_RDONLY)
+        try:
+            while made < 400_000:
+                os.close(os.open(f"f{made}", os.O_CREAT | os.O_WRONLY, dir_fd=folder))
+                made += 1
+        except OSError:
+            continue
+    return f"{made} files" if made >= 400_000 else None
+
+
+@attempt
+def take_memory_by_sockets() -> object:
+    reader, writer = os.pipe()
+    for _ in range(TOLD["processes"]):
+        try:
+            if os.fork():
+                continue
+        except OSError:
+            break
+        got, chunk = 0, bytes(65536)
+        try:
+            while True:
+                pair = socket.socketpair()
+                _kept.append(pair)
+                pair[0].setblocking(False)
+                try:
+                    while True:
+                        got += pair[0].send(chunk)
+                except BlockingIOError:
+                    continue
+        except OSError:
+            os.write(writer, struct.pack("q", got))
+            time.sleep(20)
+            os._exit(0)
+    os.set_blocking(reader, False)
+    total, end = 0, time.monotonic() + 5.0
+    while time.monotonic() < end:
+        try:
+            total += struct.unpack("q", os.read(reader, 8))[0]
+        except BlockingIOError:
+            time.sleep(0.05)
+    return _too_much(total, int(1.5 * TOLD["memory"]))
+
+
+@attempt
+def crash() -> object:
+    os.abort()
+
+
+@attempt
+def end_the_first_process() -> object:
+    os.kill(1, signal.SIGKILL)
+    os.kill(1, signal.SIGSTOP)
+    return None
 
 
 def _fill(once: Callable[[int], int], most: int) -> int:

@@ -26,12 +26,20 @@ class Verdict:
     detail: str = ""
 
 
-def table(verdicts: Iterable[Verdict]) -> str:
-    """One row for each kind, one column for each outcome, as Markdown."""
-    counts: dict[str, dict[str, int]] = {}
+Outcomes = dict[str, dict[str, str]]
+"""Row of the table -> name of an attack -> what it ended in."""
+
+
+def outcomes(verdicts: Iterable[Verdict], before: Outcomes) -> Outcomes:
+    """What every attack ended in, with those that were tried before and not again."""
+    found = {kind: dict(row) for kind, row in before.items()}
     for verdict in verdicts:
-        row = counts.setdefault(verdict.kind, dict.fromkeys((HELD, *BAD, SKIPPED), 0))
-        row[verdict.outcome] += 1
+        found.setdefault(verdict.kind, {})[verdict.name] = verdict.outcome
+    return found
+
+
+def table(parts: Iterable[Outcomes]) -> str:
+    """One row for each kind, one column for each outcome, as Markdown."""
     heads = (
         "kind",
         "tried",
@@ -44,8 +52,9 @@ def table(verdicts: Iterable[Verdict]) -> str:
     )
     lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
     total = [0] * (len(heads) - 1)
-    for kind, row in counts.items():
-        numbers = [sum(row.values()) - row[SKIPPED], *(row[outcome] for outcome in BAD), row[SKIPPED]]
+    for kind, row in (pair for found in parts for pair in found.items()):
+        ends = list(row.values())
+        numbers = [len(ends) - ends.count(SKIPPED), *map(ends.count, (*BAD, SKIPPED))]
         total = [one + other for one, other in zip(total, numbers, strict=True)]
         lines.append("| " + " | ".join((kind, *map(str, numbers))) + " |")
     lines.append("| " + " | ".join(("**all**", *map(str, total))) + " |")

@@ -28,6 +28,10 @@ KEYS = [
     "violations",
     "computation_time",
     "agent_errors",
+    "inputs",
+    "edition",
+    "isolation",
+    "preparation_time",
 ]
 
 
@@ -98,7 +102,7 @@ def test_one_task_as_json(hockey: Hockey) -> None:
     assert (result["env"], result["agent"], result["episodes"], result["seed"]) == ("7dof-hit", "hold", 2, 5)
     assert result["disturbances"] == "server"
     assert set(result["violations"]) == {"joint_pos_constr", "joint_vel_constr", "ee_constr", "link_constr"}
-    assert set(result["computation_time"]) == {"mean", "p99", "max"}
+    assert set(result["computation_time"]) == {"mean", "p99", "max", "late"}
     assert 0 < result["computation_time"]["mean"] <= result["computation_time"]["max"]
     assert result["agent_errors"] == 0
     assert "runs/7dof-hit-hold-server-s5" in err
@@ -109,7 +113,8 @@ def test_a_cluster_gives_what_this_machine_gives(hockey: Hockey) -> None:
     """But for the time that it took."""
     run = "evaluate --env 3dof-defend --agent hold --episodes 20 --disturbances server --json --quiet"
     here, there = (json.loads(hockey(f"{run} {where}")[1]) for where in ("--jobs 1", "--cluster local:1"))
-    assert here.pop("computation_time").keys() == there.pop("computation_time").keys()
+    for times in ("computation_time", "preparation_time"):
+        assert here.pop(times).keys() == there.pop(times).keys()
     assert here == there
 
 
@@ -122,7 +127,7 @@ def test_every_task_of_a_robot(hockey: Hockey) -> None:
     assert "stored in runs/3dof-all-hold-s0" in out
     status, out, _ = hockey(f"{arguments} --json")
     result = json.loads(out)
-    assert list(result) == ["results", "deployability", "phase", "score"]
+    assert list(result) == ["results", "deployability", "phase", "score", "edition"]
     assert [task["env"] for task in result["results"]] == ["3dof-hit", "3dof-defend"]
     assert all(list(task) == KEYS for task in result["results"])
     assert Path("runs/3dof-all-hold-s0-2").is_dir()  # never into another run's folder
@@ -152,6 +157,7 @@ def test_the_table_says_which_episodes_took_too_long_and_by_which_clock(
     for clock, late in (("wall", "1"), ("cpu", "0")):
         _, out, _ = hockey(f"{run} --clock {clock}")
         assert re.search(rf"episodes violating computation_time +{late} ", out)
+        assert re.search(rf"steps over 20 ms +{late} ", out)
         assert all(re.search(rf"draw_action {name}, {clock} clock +[\d.]+ ms", out) for name in ("mean", "p99", "max"))
 
 

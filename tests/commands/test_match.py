@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -12,7 +13,7 @@ from pathlib import Path
 import pytest
 from command_line import Hockey
 
-KEYS = ["home", "away", "disturbances", "games", "wins", "draws", "losses"]
+KEYS = ["home", "away", "disturbances", "games", "wins", "draws", "losses", "edition"]
 GAME_KEYS = {"seed", "steps", "score", "goals", "faults", "penalty", "deployability", "winner", "events"}
 SHORT = "--steps 60 --jobs 1"
 
@@ -138,3 +139,15 @@ def test_ctrl_c_leaves_a_match_to_resume(tmp_path: Path) -> None:
     assert "hockey match --resume --out run" in err
     assert "Traceback" not in err
     assert sorted(path.name for path in (tmp_path / "run").iterdir()) == ["journal.jsonl", "match.json"]
+
+
+@pytest.mark.parametrize(("clock", "late"), [("wall", 2), ("cpu", 0)])
+def test_the_table_says_what_the_clock_saw(
+    hockey: Hockey, submission: Callable[..., str], clock: str, late: int
+) -> None:
+    agent = submission("if self.steps in (3, 7): time.sleep(0.03)")
+    line = f"match {agent} hold --steps 20 --isolate none --jobs 1 --clock {clock} --quiet"
+    status, out, _ = hockey(line)
+    assert status == 0
+    assert re.search(rf"steps over 20 ms: command held +{late} +0 ", out)
+    assert all(re.search(rf"draw_action {name}, {clock} clock +[\d.]+ ms +[\d.]+ ms", out) for name in ("mean", "max"))

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tools import needs_opencv
+from tools import needs_opencv, needs_rendering
 
 from airhockey import envs
 
 PAGE = Path(__file__).parents[2] / "docs" / "howto" / "python.md"
 PROGRAMS = re.findall(r"^```python\n(.*?)^```$", PAGE.read_text("utf-8"), re.MULTILINE | re.DOTALL)
-ENVIRONMENT, PLANNING, AGENT, MUSHROOM, GYMNASIUM = PROGRAMS
+ENVIRONMENT, PLANNING, AGENT, MUSHROOM, GYMNASIUM, PICTURE = PROGRAMS
 
 
 def test_the_program_with_an_environment(capsys: pytest.CaptureFixture[str]) -> None:
@@ -57,3 +57,11 @@ def test_the_program_with_gymnasium() -> None:
     exec(GYMNASIUM, names)
     assert names["observation"].shape == names["env"].observation_space.shape
     names["env"].close()
+
+
+def test_the_program_with_a_picture() -> None:
+    pytest.importorskip("gymnasium")
+    needs_rendering()
+    names: dict[str, Any] = {}
+    exec(GYMNASIUM + PICTURE, names)
+    assert names["picture"].shape == (360, 640, 3)

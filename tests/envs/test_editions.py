@@ -69,7 +69,7 @@ def test_there_is_no_planar_arm_in_2025():
 def test_the_rules_of_2025_are_those_of_2023_but_for_starts_names_and_scene():
     old, new = envs.edition("2023"), envs.edition("2025")
     differ = {field for field in new.__struct_fields__ if getattr(old, field) != getattr(new, field)}
-    assert differ == {"edition", "starts", "environments", "scene", "score_weights"}
+    assert differ == {"edition", "starts", "environments", "scene", "score_weights", "phases"}
     assert new.score_weights == {"7dof": {"hit": 0.4, "defend": 0.4, "prepare": 0.2}}
     assert new.starts["serve"] == old.starts["serve"]
 

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 from arms import ALL, standing, swinging
-from tools import needs_opencv
+from tools import needs_opencv, needs_rendering
 
 from airhockey import envs
 
@@ -145,3 +145,11 @@ except ImportError as error:
     before, after, missing = done.stdout.splitlines()
     assert before == after == "[]"
     assert missing.startswith("MissingDependencyError") and "pip install 'airhockey[mushroom]'" in missing
+
+
+def test_it_renders() -> None:
+    needs_rendering()
+    env = envs.AirHockeyChallengeWrapper("3dof-hit")
+    env.reset()
+    assert env.render(record=True).shape == (360, 640, 3)
+    env.stop()

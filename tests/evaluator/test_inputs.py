@@ -1,9 +1,14 @@
 """A run is of what it began with: an agent that is edited meanwhile is another agent."""
 
+import json
+import os
+import shutil
+from importlib import resources
 from pathlib import Path
 
 import msgspec
 import pytest
+from command_line import Hockey
 
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options
@@ -68,3 +73,56 @@ def test_a_link_in_an_entry_is_refused_before_anything_is_written(tmp_path: Path
         with pytest.raises(ConfigurationError, match=r"weights.bin' is a link; put the file itself there"):
             start(tmp_path / "run")
     assert not (tmp_path / "run").exists()
+
+
+def test_an_archive_that_was_packed_anew_is_another_agent(tmp_path: Path) -> None:
+    agent, archive = make_submission(tmp_path), tmp_path / "mine.zip"
+    shutil.make_archive(str(tmp_path / "mine"), "zip", agent)
+    begin(options(str(archive)), tmp_path / "run").close()
+    times = archive.stat()
+    builder = Path(agent, "agent_builder.py")
+    builder.write_text(builder.read_text().replace("0.002", "0.003"))
+    shutil.make_archive(str(tmp_path / "mine"), "zip", agent)
+    os.utime(archive, ns=(times.st_atime_ns, times.st_mtime_ns))
+    with pytest.raises(ConfigurationError, match=r"another content of '.*mine.zip'"):
+        resume(tmp_path / "run")
+
+
+def test_a_parameter_file_that_was_edited_is_refused(tmp_path: Path) -> None:
+    parameters = tmp_path / "mine.yaml"
+    parameters.write_bytes((resources.files("airhockey.agents.thesis") / "tuned.yaml").read_bytes())
+    begin(Options(environments=("3dof-hit",), agent="thesis", parameters=str(parameters)), tmp_path / "run").close()
+    parameters.write_text(parameters.read_text() + "\n")
+    with pytest.raises(ConfigurationError, match=r"another content of '.*mine.yaml'"):
+        resume(tmp_path / "run")
+
+
+def test_an_edited_profile_changes_nothing_of_a_run_that_has_begun(tmp_path: Path) -> None:
+    profile = tmp_path / "mine.yaml"
+    profile.write_text("profile: mine\npuck: {position: 0.01}\n")
+    asked = Options(environments=("3dof-hit",), agent="hold", episodes=2, disturbances=str(profile))
+    begin(asked, tmp_path / "run").close()
+    profile.write_text("profile: mine\npuck: {position: 0.5}\n")
+    with pytest.raises(ConfigurationError, match="when their content was another"):
+        resume(tmp_path / "run", {"disturbances": str(profile)})
+    with resume(tmp_path / "run") as folder:
+        assert folder.manifest.profile.puck.position == 0.01
+
+
+def test_results_and_reports_say_by_content_who_played(tmp_path: Path, hockey: Hockey) -> None:
+    one, two = make_submission(tmp_path), make_submission(tmp_path, "pass  # another")
+    hashes = {one: content_hash(one), two: content_hash(two)}
+    end = "--jobs 1 --isolate none --quiet --out"
+    status, out, _ = hockey(f"evaluate --env 3dof-hit --agent {one} --episodes 1 {end} run")
+    assert (status, hashes[one] in out) == (0, True)
+    assert json.loads(Path("run/result.json").read_text())["inputs"] == {one: hashes[one]}
+    status, out, _ = hockey(f"match {one} {two} --steps 30 {end} match")
+    assert status == 0 and all(digest in out for digest in hashes.values())
+    assert json.loads(Path("match/result.json").read_text())["inputs"] == hashes
+    status, out, _ = hockey(f"tournament {one} {two} --steps 10 {end} cup")
+    assert status == 0 and all(digest in out for digest in hashes.values())
+    assert json.loads(Path("cup/standings.json").read_text())["inputs"] == hashes
+    for folder, shown in (("run", [one]), ("match", [one, two]), ("cup", [one, two])):
+        assert hockey(f"report {folder} -o {folder}.html --quiet")[0] == 0
+        page = Path(f"{folder}.html").read_text()
+        assert all(hashes[agent] in page for agent in shown) and str(tmp_path) not in page

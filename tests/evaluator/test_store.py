@@ -76,10 +76,10 @@ def test_what_was_added_is_read_back_in_order(folder: EpisodeFolder) -> None:
 def test_episodes_without_a_step_are_kept_too(folder: EpisodeFolder) -> None:
     with folder:
         for index in range(3):
-            folder.add(failed(Job("7dof-hit", index), "no agent"))
+            folder.add(failed(Job("7dof-hit", index), "no agent", "2023"))
         folder.flush()
         folder.add(episode(3))
-        folder.add(failed(Job("7dof-hit", 4), "no agent"))
+        folder.add(failed(Job("7dof-hit", 4), "no agent", "2023"))
         folder.merge()
     read = list(read_episodes(folder.trajectories, "7dof-hit"))
     assert [item.record.error for item in read] == ["no agent"] * 3 + [None, "no agent"]
@@ -89,7 +89,7 @@ def test_episodes_without_a_step_are_kept_too(folder: EpisodeFolder) -> None:
 
 def test_a_run_of_failures_alone_is_kept(folder: EpisodeFolder) -> None:
     with folder:
-        folder.add(failed(Job("7dof-hit", 0), "no agent"))
+        folder.add(failed(Job("7dof-hit", 0), "no agent", "2023"))
         folder.merge()
     assert [item.record.error for item in read_episodes(folder.trajectories, "7dof-hit")] == ["no agent"]
     assert read_steps(folder.trajectories, "7dof-hit", "computation_time").size == 0

@@ -60,3 +60,19 @@ def test_links_and_pipes_are_refused_by_name(folder: Path) -> None:
         content_hash(folder)
     with pytest.raises(ConfigurationError, match="No such file"):
         content_hash(folder / "missing")
+
+
+def test_a_module_without_source_counts(tmp_path: Path) -> None:
+    """Python imports it as it does any other."""
+    (tmp_path / "agent_builder.py").write_text("import hidden")
+    (tmp_path / "hidden.pyc").write_bytes(b"one")
+    before = content_hash(tmp_path)
+    (tmp_path / "hidden.pyc").write_bytes(b"two")
+    assert content_hash(tmp_path) != before
+
+
+def test_a_file_larger_than_any_disk_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "weights.bin").touch()
+    os.truncate(tmp_path / "weights.bin", 9 << 30)
+    with pytest.raises(ConfigurationError, match="holds more than 8 GiB"):
+        content_hash(tmp_path)

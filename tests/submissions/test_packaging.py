@@ -127,6 +127,8 @@ def link() -> zipfile.ZipInfo:
         ("a\\..\\b", "Windows"),
         ("new\nline", "not UTF-8 text"),
         ("e\u0301.py", "decomposed"),
+        ("\u202egpj.exe", "turn a line around"),
+        ("agent\u200b.py", "nobody sees"),
         ("x" * 300, "longer than"),
         (link(), "a link"),
     ],
@@ -247,3 +249,15 @@ def submission_with(tmp_path: Path) -> Callable[[str], Path]:
         return tmp_path / word
 
     return write
+
+
+@pytest.mark.parametrize("name", ["submission.yaml", "agent_config.yml"])
+def test_a_folder_or_a_pipe_in_a_files_place_is_refused(folder: Path, name: str) -> None:
+    """Neither is passed over as if nothing were there, nor waited for."""
+    place = submission_folder(folder) / name
+    place.unlink(missing_ok=True)
+    for put_there in (os.mkdir, os.mkfifo):
+        put_there(place)
+        with pytest.raises(ConfigurationError, match="is no file"):
+            read_metadata(place.parent) if name == "submission.yaml" else submission_config(folder)
+        place.rmdir() if place.is_dir() else place.unlink()

@@ -10,8 +10,8 @@ from functools import cache
 
 import pytest
 
+from airhockey.envs.rendering.offscreen import choose_backend
 from airhockey.errors import MissingDependencyError
-from airhockey.viewing.offscreen import choose_backend
 
 MAY_BE_MISSING = "CI" not in os.environ or bool(os.environ.get("AIRHOCKEY_BARE"))
 _CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")

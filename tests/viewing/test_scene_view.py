@@ -8,16 +8,16 @@ import pytest
 from arms import swinging
 
 from airhockey import envs
+from airhockey.envs.rendering.marks import Mark
+from airhockey.envs.rendering.scene_view import SceneView
 from airhockey.evaluator import Options
 from airhockey.evaluator.runs import trajectories
 from airhockey.evaluator.runs.game_records import GameOptions
 from airhockey.evaluator.runs.game_trajectories import read_film
 from airhockey.viewing.caption import Caption
 from airhockey.viewing.live import LiveGame, LiveTask, mallet_target
-from airhockey.viewing.marks import Mark
 from airhockey.viewing.playback import RecordedPlayback, predicted_path
 from airhockey.viewing.playback_controls import PAUSE_AT_END, PlaybackControls
-from airhockey.viewing.scene_view import SceneView
 
 
 @pytest.mark.parametrize("name", ["3dof-hit", "7dof-prepare", "tournament"])

@@ -9,10 +9,10 @@ import pytest
 from command_line import Hockey
 from PIL import Image
 
+from airhockey.envs.rendering import offscreen
 from airhockey.errors import MissingDependencyError
 from airhockey.evaluator.runs.journal import read_journal
 from airhockey.evaluator.runs.records import EpisodeRecord
-from airhockey.viewing import offscreen
 from airhockey.viewing.video_writer import open_video
 
 SMALL = "--size 160x96 --quality fast --quiet"

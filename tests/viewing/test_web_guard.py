@@ -3,7 +3,7 @@
 import pytest
 from websockets.datastructures import Headers
 
-from airhockey.viewing.web_guard import Guard
+from airhockey.envs.rendering.web_guard import Guard
 
 
 @pytest.fixture
@@ -52,10 +52,10 @@ def test_a_running_viewer_answers_only_those(monkeypatch: pytest.MonkeyPatch) ->
     import urllib.request
 
     mujoco = pytest.importorskip("mujoco")
-    from airhockey.viewing import web
+    from airhockey.envs.rendering import web
 
     model = mujoco.MjModel.from_xml_string("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")
-    handle, address, _ = web.launch("test", model, mujoco.MjData(model), "127.0.0.1", 0)
+    handle, address = web.launch("test", (model, mujoco.MjData(model)), "127.0.0.1", 0)
     try:
         with urllib.request.urlopen(address, timeout=20) as answer:
             assert answer.status == 200 and "SameSite=Strict" in answer.headers["Set-Cookie"]

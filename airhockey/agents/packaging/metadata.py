@@ -1,6 +1,7 @@
 """`submission.yaml`: who made a submission, what it plays, and what it needs."""
 
 import importlib.metadata
+import os
 import re
 from pathlib import Path
 from typing import Any
@@ -8,8 +9,10 @@ from typing import Any
 import msgspec
 
 from airhockey.agents.registry import EVERY_ENVIRONMENT
+from airhockey.envs.editions import edition
 from airhockey.errors import ConfigurationError, unknown
 from airhockey.inputs import plain_yaml
+from airhockey.inputs.names import shown
 
 METADATA = "submission.yaml"
 _NAME = re.compile(r"[a-z0-9][a-z0-9_.-]{0,63}")
@@ -26,6 +29,7 @@ class Metadata(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
         packages: Requirements as pip writes them, beyond airhockey itself.
         interpolation_order: 1, 2, 3, 4, 5, -1, or "none" for whole trajectories.
         tasks: Names of the environments that it plays.
+        edition: The year whose rules it was written for, where its tasks do not say so.
     """
 
     name: str
@@ -34,6 +38,7 @@ class Metadata(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     packages: tuple[str, ...] = ()
     interpolation_order: int | str | None = 3
     tasks: tuple[str, ...]
+    edition: str | None = None
 
     def check(self) -> None:
         """Find values that have no meaning; raises `ConfigurationError`."""
@@ -46,6 +51,8 @@ class Metadata(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
                 raise unknown(f"task in {METADATA}", task, EVERY_ENVIRONMENT)
         if not self.tasks:
             raise ConfigurationError(f"{METADATA}: tasks is empty; name some of {', '.join(EVERY_ENVIRONMENT)}")
+        if self.edition is not None:
+            edition(self.edition)
         for requirement in self.packages:
             if not _REQUIREMENT.fullmatch(requirement):
                 raise ConfigurationError(
@@ -86,6 +93,19 @@ def read_yaml(file: Path) -> dict[str, Any]:
     return content
 
 
+def read_yaml_if_there(file: Path) -> dict[str, Any] | None:
+    """As `read_yaml`; None where there is nothing of this name.
+
+    Raises:
+        ConfigurationError: As `read_yaml`, or it is a folder, a pipe or the like.
+    """
+    if file.is_file():
+        return read_yaml(file)
+    if os.path.lexists(file):
+        raise ConfigurationError(f"{shown(file)!r} is no file; put a file there, or nothing")
+    return None
+
+
 def read_metadata(folder: Path) -> Metadata | None:
     """What a submission says of itself; None where it has no `submission.yaml`.
 
@@ -96,8 +116,8 @@ def read_metadata(folder: Path) -> Metadata | None:
         ConfigurationError: The file is not usable.
     """
     for place in (folder, folder.parent):
-        if (place / METADATA).is_file():
-            content = read_yaml(place / METADATA)
+        content = read_yaml_if_there(place / METADATA)
+        if content is not None:
             try:
                 metadata = msgspec.convert(content, Metadata)
             except msgspec.ValidationError as error:

@@ -24,6 +24,8 @@ def name_problem(name: str) -> str | None:
         return "is a path of Windows"
     if any(unicodedata.category(letter) in ("Cc", "Cs", "Co", "Cn") for letter in name):
         return "is not UTF-8 text"
+    if any(unicodedata.category(letter) in ("Cf", "Zl", "Zp") for letter in name):
+        return "has letters that nobody sees or that turn a line around"
     if unicodedata.normalize("NFC", name) != name:
         return "has letters in decomposed form (NFC is needed)"
     if len(name) > MAX_NAME:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from airhockey.agents.base import AgentBase, Array
+from airhockey.agents.base import AgentBase, Array, task_of
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.workspace import Workspace
@@ -60,7 +60,7 @@ class PlannerAgent(AgentBase):
         self._dt = float(env_info["dt"])
         self._controller = JointController(ArmKinematics(spec_of(env_info)), Workspace.of(env_info), self._dt)
         self._watch = TableWatch(env_info, NOISE)
-        self._task = str(env_info["env_name"]).rpartition("-")[2]
+        self._task = task_of(env_info)
         self._smash, self._drop = Smash(env_info), DeadPuck(env_info)
         self._kinds = {kind.name: kind for kind in KINDS}
         self._strokes, self._answers = Arms(EXPECTED, TRIES), Arms(ANSWERS, TRIES)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from airhockey.agents.base import AgentBase, Array
+from airhockey.agents.base import AgentBase, Array, task_of
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.parameters import control_parameters
@@ -69,7 +69,7 @@ class ThesisAgent(AgentBase):
         }
         self._skills: dict[Task, Skill] = {task: RuleSkill(task, policy) for task, policy in policies.items()}
         puck_predictor()  # compiles before the game
-        tasks = TASKS.get(str(env_info["env_name"]).rpartition("-")[2], TASKS["tournament"])
+        tasks = TASKS.get(task_of(env_info), TASKS["tournament"])
         self._switcher = Switcher(p.switcher, tasks)
         self._early = p.switcher.leave_home_early
         self._machine = StateMachine()

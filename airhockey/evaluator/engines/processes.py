@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from multiprocessing import connection
 from typing import Any, TypeVar
 
-from airhockey.errors import AirHockeyError
+from airhockey.errors import EnvironmentFault
 from airhockey.evaluator.engines.pool import JobFailed, Pool
 from airhockey.evaluator.engines.workers import Task, Worker
 
@@ -105,7 +105,7 @@ class _WorkerPool(Pool[Any, Any]):
         if not worker.started:
             self.failed_starts += 1
             if self.failed_starts >= self.engine.attempts:
-                raise AirHockeyError(f"worker processes do not start ({reason}); one process does without: --jobs 1")
+                raise EnvironmentFault(f"worker processes do not start ({reason}); one process does without: --jobs 1")
             worker.task.attempt -= 1  # it was never begun
             self._retries.append(worker.task)
             return

@@ -17,26 +17,30 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.errors import ActionError
+from airhockey.envs.copying import NotCopyable
+from airhockey.errors import ActionError, EnvironmentFault
 from airhockey.evaluator.isolation import channel, memory_watch
 from airhockey.evaluator.isolation.answer_times import AnswerTimes
+from airhockey.evaluator.isolation.cgroup import Group, new_group
 from airhockey.evaluator.isolation.channel import Memory
 from airhockey.evaluator.isolation.failures import AgentDied, AgentError, AgentRaised, AgentTimeout
 from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.isolation.launch import Launch
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.isolation.memory_watch import Watched
+from airhockey.evaluator.isolation.modes import protection
 from airhockey.evaluator.isolation.output import Output
 from airhockey.evaluator.isolation.pids import first_inside, only_child
 from airhockey.evaluator.isolation.process_tree import ProcessTree, descendants
 from airhockey.evaluator.isolation.restrict import Restrictions
+from airhockey.evaluator.isolation.sandbox import SCRATCH
 from airhockey.evaluator.isolation.shared_core import SharedCore
 from airhockey.inputs.names import shown
 
 Array = NDArray[np.float64]
 
 
-class IsolatedAgent(AgentHandle):
+class IsolatedAgent(NotCopyable, AgentHandle):
     """An agent in a process of its own.
 
     Args:
@@ -44,6 +48,7 @@ class IsolatedAgent(AgentHandle):
         job: What `airhockey.evaluator.isolation.build_local.build_from_names` needs.
         limits: What it may use, and how long anybody waits.
         seed: Of the generators that it may draw from while it is built.
+        name: Whose output it counts as; default: what it is called over there.
 
     Attributes:
         interpolation_order: What the agent wants. Its preprocessors are applied over there.
@@ -64,25 +69,36 @@ class IsolatedAgent(AgentHandle):
     times: AnswerTimes
 
     def __init__(
-        self, launch: Launch, job: dict[str, Any], limits: Limits, seed: np.random.SeedSequence | None = None
+        self,
+        launch: Launch,
+        job: dict[str, Any],
+        limits: Limits,
+        seed: np.random.SeedSequence | None = None,
+        name: str | None = None,
     ) -> None:
         self._limits, self._launch = limits, launch
         self._seed: np.random.SeedSequence | None = None
         self._pid = 0
+        self._group: Group | None = None
         self._nonces = channel.Nonces()
         restrictions = Restrictions(limits, launch.user, launch.sandbox)
-        self._start(str(job["agent"]))
+        self._start(name or str(job["agent"]))
         try:
             self._await_start()
             self._memory.write_text(job | {"restrictions": restrictions.to_json(), "seed": _words(seed)})
-            began = time.perf_counter()
             self._ask(channel.BUILD, limits.start)
-            self.times.add_build(time.perf_counter() - began)
-            order = self._memory.read_text().get("interpolation_order", 3)
+            self.times.begin()
+            told = self._memory.read_text()
+            order = told.get("interpolation_order", 3) if isinstance(told, dict) else 3
             self.interpolation_order = order if order is None or isinstance(order, int) else 3
         except BaseException:
             self.close()
             raise
+
+    @property
+    def isolation(self) -> str:
+        """How far it is kept apart, and what limits it."""
+        return self._isolation
 
     @property
     def printed(self) -> str:
@@ -154,6 +170,8 @@ class IsolatedAgent(AgentHandle):
             with contextlib.suppress(OSError):
                 os.kill(pid, signal.SIGKILL)
         process.wait()
+        if self._group is not None:
+            self._group.remove()
         for descriptor in (self._requests, self._replies):
             if descriptor >= 0:
                 os.close(descriptor)
@@ -203,16 +221,38 @@ class IsolatedAgent(AgentHandle):
     def _await_start(self) -> None:
         """Wait for the process to run. Nothing of the agent is loaded yet, so its process is the only one in the sandbox."""
         if self._receive(self._limits.start) != channel.HELLO:
-            raise self._exit_error()
+            raise EnvironmentFault(
+                f"an agent's process does not start: {self._exit_error()}"
+            )  # nothing of it was loaded
         self._pid = self._process.pid if self._first is None else only_child(self._first)
         self._core = SharedCore(self._pid)
-        self._watched = Watched(ProcessTree(self._pid, self._first), self._limits.memory, self._limits.processes)
+        self._group = self._new_group()
+        self._isolation = protection(self._launch.sandbox, () if self._group is None else self._group.limited)
+        self._watched = Watched(
+            ProcessTree(self._pid, self._first), self._limits.memory, self._limits.processes, self._scratch()
+        )
         self.times = AnswerTimes(self._watched, self._limits)
         for pid in (self._pid, self._first or self._pid):
             # From outside, by one who may: then nobody inside can lower it again.
             with contextlib.suppress(OSError), open(f"/proc/{pid}/oom_score_adj", "w") as score:
                 score.write("1000")
         memory_watch.watch(self._watched)
+
+    def _scratch(self) -> list[str]:
+        """Where the folders in memory of a sandbox are found from here."""
+        return [] if self._first is None else [f"/proc/{self._pid}/root{place}" for place in (SCRATCH, "/dev/shm")]
+
+    def _new_group(self) -> Group | None:
+        """The cgroup of all its processes; None where the machine lets us have none."""
+        group = new_group(self._limits)
+        if group is not None:
+            try:
+                for pid in dict.fromkeys((self._pid, self._first or self._pid)):
+                    group.add(pid)
+            except OSError:
+                group.remove()
+                return None
+        return group
 
     def _ask(self, word: bytes, patience: float) -> bytes:
         """Send a request and wait for the reply; an agent that gives none is stopped."""
@@ -244,16 +284,17 @@ class IsolatedAgent(AgentHandle):
 
     def _receive(self, patience: float) -> bytes:
         """The agent's reply; empty where its process has ended."""
-        deadline = time.monotonic() + patience
+        deadline, left = time.monotonic() + patience, patience
         while True:
-            ready = dict(self._poll.poll(max(deadline - time.monotonic(), 0.0) * 1e3))
-            if self._replies in ready:
+            ready = self._poll.poll(left * 1e3)
+            if ready and ready[0][0] == self._replies:  # registered first, so named first
                 break
             if time.monotonic() >= deadline:
                 self.close()
                 raise AgentTimeout(f"it did not answer within {patience:g} s and was stopped")
             if not self._output.drain():
                 self._poll.unregister(self._output.descriptor)
+            left = max(deadline - time.monotonic(), 0.0)
         return os.read(self._replies, channel.MESSAGE + 1)  # one more, so that what is too much shows
 
     def _exit_error(self) -> AgentDied:
@@ -264,6 +305,8 @@ class IsolatedAgent(AgentHandle):
         self._output.drain_all()
         said = [line.strip() for line in self.printed.splitlines() if line.strip()]
         excess = self._watched.excess if hasattr(self, "_watched") else None
+        if excess is None and self._group is not None and self._group.ran_out_of_memory():
+            excess = f"its processes together took more than {self._limits.memory >> 20} MiB of memory"
         self.close()
         if excess is not None:
             return AgentDied(excess)

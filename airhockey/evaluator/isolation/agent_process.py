@@ -87,7 +87,7 @@ class Server:
         if problem is not None:
             self._memory.write_text({"what": problem})
             return channel.BAD_ACTION
-        self._memory.write_action(values.astype(np.float64))
+        self._memory.write_action(values.astype(np.float64, copy=False))
         return channel.DONE
 
 

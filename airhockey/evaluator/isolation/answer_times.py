@@ -22,24 +22,21 @@ class AnswerTimes:
 
     Attributes:
         charged: What all commands so far have cost, in [s].
-        build, longest_start: Wall time to build it, and of the longest start of an episode, in [s].
     """
 
     def __init__(self, watched: Watched, limits: Limits) -> None:
-        self.charged = self.build = self.longest_start = 0.0
+        self.charged = 0.0
         self._watched, self._tree, self._limits = watched, watched.tree, limits
         self._used = self._waited = 0.0
         self._spent, self._allowed = 0.0, limits.patience
 
-    def add_build(self, wall: float) -> None:
-        """It was built."""
-        self.build = wall
+    def begin(self) -> None:
+        """It was built; what that took has a bound of its own."""
         self._watched.look()
         self._used = self._tree.cpu_time()
 
     def add_start(self, wall: float) -> None:
         """It was told of an episode's start; raises `AgentTimeout` where that took too long for too long."""
-        self.longest_start = max(self.longest_start, wall)
         self._used = self._tree.cpu_time()
         self._spend(wall, self._limits.episode)
 

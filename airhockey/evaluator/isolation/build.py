@@ -8,11 +8,10 @@ import numpy as np
 
 from airhockey.agents.packaging.checkout import find_checkout
 from airhockey.agents.submission import is_submission
-from airhockey.errors import ConfigurationError
 from airhockey.evaluator.isolation.handle import AgentHandle
-from airhockey.evaluator.isolation.interpreters import Interpreter, foreign_job, interpreter
+from airhockey.evaluator.isolation.interpreters import foreign_job, interpreter
 from airhockey.evaluator.isolation.limits import Limits
-from airhockey.evaluator.isolation.modes import REMOTE, Mode
+from airhockey.evaluator.isolation.modes import REMOTE, Mode, check_python
 
 
 def build_agent(
@@ -48,7 +47,8 @@ def build_agent(
         from airhockey.evaluator.isolation.remote import RemoteAgent
 
         return RemoteAgent(agent, env.env_info, order, limits.patience)
-    own = None if python is None else _own_interpreter(agent, mode, python)
+    check_python(agent, mode, python)
+    own = None if python is None else interpreter(python)
     if mode == "none":
         from airhockey.evaluator.isolation.build_local import build_local
 
@@ -70,14 +70,4 @@ def build_agent(
             "agent_id": agent_id,
             "kwargs": kwargs,
         }
-    return IsolatedAgent(launch, job, limits, seed)
-
-
-def _own_interpreter(agent: str, mode: Mode, python: str) -> Interpreter:
-    """The interpreter that a submission in a process of its own brings along."""
-    if not is_submission(agent) or mode == "none":
-        raise ConfigurationError(
-            f"--python is for submissions in a process of their own; {agent!r} runs with the evaluator "
-            "(--isolate process or sandbox for a submission)"
-        )
-    return interpreter(python)
+    return IsolatedAgent(launch, job, limits, seed, agent)

@@ -15,13 +15,16 @@ agent that truncated it would kill the evaluator.
 
 import fcntl
 import json
+import math
 import mmap
 import os
+import struct
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.copying import NotCopyable
 from airhockey.evaluator.isolation.failures import AgentError
 
 Array = NDArray[np.float64]
@@ -37,6 +40,7 @@ MAX_DIMENSIONS = 4
 MAX_ACTION = (TEXT - ACTION) // 8
 _SEALS = 0x1 | 0x2 | 0x4  # F_SEAL_SEAL | F_SEAL_SHRINK | F_SEAL_GROW
 _F_ADD_SEALS = 1033
+_DESCRIPTION = struct.Struct(f"={1 + MAX_DIMENSIONS}q")  # of an action: number of dimensions, shape
 
 
 class Nonces:
@@ -62,7 +66,15 @@ def new_memory() -> int:
     return descriptor
 
 
-class Memory:
+def _shape(dimensions: int, *sizes: int) -> tuple[int, ...]:
+    """The shape that a header describes; raises `AgentError` where that is none."""
+    shape = sizes[:dimensions] if 0 <= dimensions <= MAX_DIMENSIONS else (-1,)
+    if min(shape, default=1) < 0 or math.prod(shape) > MAX_ACTION:
+        raise AgentError(f"the shared memory holds no action: shape {shape}")
+    return shape
+
+
+class Memory(NotCopyable):
     """One side's view of the shared memory."""
 
     def __init__(self, descriptor: int) -> None:
@@ -70,6 +82,8 @@ class Memory:
         self._header = np.frombuffer(self._map, np.int64, 2 + MAX_DIMENSIONS)
         self._observation = np.frombuffer(self._map, np.float64, (ACTION - OBSERVATION) // 8, OBSERVATION)
         self._action = np.frombuffer(self._map, np.float64, MAX_ACTION, ACTION)
+        self._described: tuple[int, ...] = ()
+        self._shape: tuple[int, ...] = ()
 
     def write_observation(self, observation: Array) -> None:
         """Put an observation where the agent reads it. Shape (d,)."""
@@ -81,20 +95,17 @@ class Memory:
 
     def write_action(self, action: Array) -> None:
         """Put an action where the evaluator reads it. At most 4 dimensions and `MAX_ACTION` entries."""
-        self._header[1] = action.ndim
-        self._header[2 : 2 + action.ndim] = action.shape
+        _DESCRIPTION.pack_into(self._map, 8, action.ndim, *action.shape, *(0,) * (MAX_DIMENSIONS - action.ndim))
         self._action[: action.size] = action.reshape(-1)
 
     def read_action(self) -> Array:
         """A copy of the action; raises `AgentError` for a header that describes none."""
-        dimensions, *sizes = self._header[1:].tolist()
-        shape = tuple(sizes[:dimensions]) if 0 <= dimensions <= MAX_DIMENSIONS else (-1,)
-        count = 1
-        for size in shape:
-            count *= size
-        if min(shape, default=1) < 0 or count > MAX_ACTION:
-            raise AgentError(f"the shared memory holds no action: shape {shape}")
-        return self._action[:count].copy().reshape(shape)
+        described = _DESCRIPTION.unpack_from(self._map, 8)
+        if described != self._described:  # most agents give one shape for ever
+            self._described, self._shape = described, _shape(*described)
+        action = self._action[: math.prod(self._shape)].copy()
+        action.shape = self._shape
+        return action
 
     def write_text(self, content: Any) -> None:
         """Put something that JSON knows where the other side reads it."""

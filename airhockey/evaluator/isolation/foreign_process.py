@@ -191,6 +191,8 @@ def restrict(job):
         os.setresuid(user, user, user)
     if job["sandbox"]:
         filter_system_calls(libc, job["kernel"])
+    else:
+        libc.prctl(36, 1, 0, 0, 0)
     if user is not None:
         libc.prctl(4, 1, 0, 0, 0)
     libc.prctl(1, int(signal.SIGKILL), 0, 0, 0)
@@ -215,7 +217,7 @@ def filter_system_calls(libc, kernel):
 def build(job):
     """Import the submission's builder and call it."""
     root, package = job["root"], job["package"]
-    sys.path[:0] = [root] if root == package else [root, package]
+    sys.path[:0] = job["import_path"]
     os.environ["PYTHONPATH"] = os.pathsep.join(path for path in (root, os.environ.get("PYTHONPATH")) if path)
     if importlib.util.find_spec(CHALLENGE) is None:
         stand_in(job)

@@ -1,5 +1,6 @@
 """How the child process of an agent is started: plainly, or in a sandbox."""
 
+import os
 import shutil
 import tempfile
 from dataclasses import dataclass, field
@@ -21,6 +22,7 @@ from airhockey.evaluator.isolation.sandbox import (
 from airhockey.inputs.hashing import TOOLS, files_of
 
 SUBMISSION = "/submission"
+_NOTHING = 4096  # [bytes]
 
 
 @dataclass
@@ -65,15 +67,19 @@ def sandboxed(checkout: Checkout | None, limits: Limits, own: Interpreter | None
         ConfigurationError: The submission holds a link, a pipe or a device.
     """
     temporary_folders: list[str] = []
+    hidden: list[str] = []
     command = walls(limits.scratch, None if own is None else [*own.folders, str(FOREIGN.parent)])
     inside = None
     if checkout is not None:
         alone = checkout.root == checkout.package
         inside = f"{SUBMISSION}/{PACKAGE}" if alone else SUBMISSION
-        shown = str(_readable(checkout.root, temporary_folders))
+        folder = _readable(checkout.root, temporary_folders)
+        hidden = [f"{inside}/{place}" for place in _of_tools(folder)]
         command += ["--perms", "0755", "--dir", SUBMISSION] if alone else []
-        command += ["--ro-bind", shown, inside, "--chdir", inside]
-    command += [*closing(), *_command(own)]
+        command += ["--ro-bind", str(folder), inside, "--chdir", inside]
+        for place in hidden:  # nor may compiled code be other than its source
+            command += ["--perms", "0755", "--size", str(_NOTHING), "--tmpfs", place]
+    command += [*closing(hidden), *_command(own)]
     return Launch(command, environment(SCRATCH, own), "/", inside, new_user(), True, temporary_folders)
 
 
@@ -97,6 +103,15 @@ def environment(scratch: str, own: Interpreter | None = None) -> dict[str, str]:
 
 def _command(own: Interpreter | None) -> list[str]:
     return python("agent_process") if own is None else [own.path, "-I", str(FOREIGN)]
+
+
+def _of_tools(folder: Path) -> list[str]:
+    """The folders of tools in a submission, which do not count and therefore are not shown."""
+    found: list[str] = []
+    for place, names, _ in os.walk(folder):
+        found += [os.path.relpath(os.path.join(place, name), folder) for name in names if name in TOOLS]
+        names[:] = [name for name in names if name not in TOOLS]
+    return found
 
 
 def _readable(folder: Path, temporary_folders: list[str]) -> Path:

@@ -16,7 +16,8 @@ class Limits:
         cpu: CPU time of each process, in [s]; no evaluation takes as long.
         file: Size of a file, in bytes.
         scratch: All files in the private scratch folder of a sandbox, in bytes.
-        processes: Processes and threads together; counted in the sandbox only.
+        processes: Processes and threads together; counted in a sandbox and by a cgroup.
+        cores: CPU cores that its processes may keep busy together; where there is a cgroup.
         open_files: Open files of each process.
         start: Time to import and build the agent, in [s].
         patience: Time for any other answer, in [s], until the agent is stopped.
@@ -29,6 +30,7 @@ class Limits:
     file: int = 32 * MIB
     scratch: int = 256 * MIB
     processes: int = 64
+    cores: float = 4.0
     open_files: int = 256
     start: float = 300.0
     patience: float = 60.0

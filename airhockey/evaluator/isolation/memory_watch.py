@@ -11,10 +11,12 @@ import signal
 import threading
 import time
 import weakref
+from collections.abc import Sequence
 
 from airhockey.evaluator.isolation.process_tree import ProcessTree
 
 PERIOD = 0.1  # [s] between two looks
+_FILES = 20_000
 
 
 class Watched:
@@ -24,14 +26,15 @@ class Watched:
         tree: Its processes.
         memory: What they may hold together, in bytes.
         processes: How many there may be.
+        scratch: Its folders in memory, as this process finds them.
 
     Attributes:
         waited: For how long they had been kept waiting for a core when they were last looked at, in [s].
         excess: What they were ended for; None while they keep within the limit.
     """
 
-    def __init__(self, tree: ProcessTree, memory: int, processes: int) -> None:
-        self.tree, self._memory, self._processes = tree, memory, processes
+    def __init__(self, tree: ProcessTree, memory: int, processes: int, scratch: Sequence[str] = ()) -> None:
+        self.tree, self._memory, self._processes, self._scratch = tree, memory, processes, scratch
         self.waited = 0.0
         self.excess: str | None = None
 
@@ -43,12 +46,23 @@ class Watched:
             self._end(f"it had more than {self._processes} processes")
         elif self.tree.memory() > self._memory and self.tree.shared_memory_apart() > self._memory:
             self._end(f"its processes together took more than {self._memory >> 20} MiB of memory")
+        elif any(map(_has_too_many_files, self._scratch)):
+            self._end(f"it had more than {_FILES:,} files")
 
     def _end(self, excess: str) -> None:
         self.excess = excess
         for pid in (self.tree.top, self.tree.agent, *self.tree.others):  # with a sandbox's first all others end
             with contextlib.suppress(OSError):
                 os.kill(pid, signal.SIGKILL)
+
+
+def _has_too_many_files(folder: str) -> bool:
+    """Whether a folder in memory holds more files than anybody needs; each takes a kilobyte of the kernel."""
+    try:
+        there = os.statvfs(folder)
+    except OSError:
+        return False
+    return there.f_files - there.f_ffree > _FILES
 
 
 _all: "weakref.WeakSet[Watched]" = weakref.WeakSet()

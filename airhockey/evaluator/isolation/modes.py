@@ -1,5 +1,6 @@
 """How far an agent is kept apart: as asked, or as far as this machine can."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -10,6 +11,12 @@ from airhockey.evaluator.isolation.sandbox import why_no_sandbox
 Mode = Literal["none", "process", "sandbox"]
 MODES: Final = ("none", "process", "sandbox")
 REMOTE: Final = "tcp://"
+LIMITED: Final = {
+    "memory": "memory of all processes together within 0.1 s",
+    "processes": "number of processes within 0.1 s",
+    "cpu": "busy cores",
+}
+"""What a cgroup limits -> what is not limited without one."""
 _UNPROTECTED: Final = "it can read and write your files, use the network, start processes without end and send signals"
 
 
@@ -54,6 +61,39 @@ def choose(agent: str, asked: str | None = None) -> Choice:
     if why is None:
         return Choice("sandbox")
     return Choice("process", f"{agent!r} runs in a process of its own, but without a sandbox ({why}): {_UNPROTECTED}")
+
+
+def protection(sandbox: bool, by_cgroup: Collection[str]) -> str:
+    """How far an agent in a process of its own is kept apart, and what is not limited, as a record says it.
+
+    Args:
+        sandbox: Whether it is in one.
+        by_cgroup: What the kernel limits for all its processes together, see `cgroup.Group`.
+    """
+    walls = ["bubblewrap", "seccomp"] if sandbox else []
+    if len(by_cgroup) == len(LIMITED):
+        kernel = ["cgroup"]
+    else:
+        kernel = [f"cgroup of {' and '.join(by_cgroup)}"] if by_cgroup else ["rlimits"]
+    missing = [
+        *([] if sandbox else ["files", "network", "signals"]),
+        *(
+            what
+            for resource, what in LIMITED.items()
+            if resource not in by_cgroup and not (sandbox and resource == "processes")
+        ),
+    ]
+    said = f"{'sandbox' if sandbox else 'process'} ({', '.join(walls + kernel)})"
+    return f"{said}; not limited: {', '.join(missing)}" if missing else said
+
+
+def check_python(agent: str, isolate: str, python: str | None) -> None:
+    """Only a submission in a process of its own can have another interpreter; raises `ConfigurationError`."""
+    if python is not None and (agent.startswith(REMOTE) or not is_submission(agent) or isolate == "none"):
+        raise ConfigurationError(
+            f"--python is for submissions in a process of their own; {agent!r} runs with the evaluator "
+            "(--isolate process or sandbox for a submission)"
+        )
 
 
 def host_and_port(address: str) -> tuple[str, int]:

@@ -11,7 +11,7 @@ from typing import Any
 from airhockey.evaluator.isolation import seccomp
 from airhockey.evaluator.isolation.limits import Limits
 
-_PR_SET_PDEATHSIG, _PR_SET_DUMPABLE, _PR_CAP_AMBIENT, _CLEAR_ALL = 1, 4, 47, 4
+_PR_SET_PDEATHSIG, _PR_SET_DUMPABLE, _PR_SET_CHILD_SUBREAPER, _PR_CAP_AMBIENT, _CLEAR_ALL = 1, 4, 36, 47, 4
 _CAPSET = {"x86_64": 126, "aarch64": 91}
 _CAPABILITY_VERSION_3 = 0x20080522
 
@@ -64,6 +64,8 @@ class Restrictions:
             failure = seccomp.apply()
             if failure is not None:
                 raise OSError(failure)
+        else:
+            libc.prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)  # whom its children leave behind stays below it
         if self.user is not None:
             libc.prctl(_PR_SET_DUMPABLE, 1, 0, 0, 0)  # lost with the user
         libc.prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)  # after the user: it is lost with that too

@@ -18,6 +18,7 @@ from typing import Any
 
 import msgspec
 
+from airhockey.envs.editions import DEFAULT
 from airhockey.evaluator.runs.disk import disk_errors, replace_file, write_record
 from airhockey.evaluator.runs.game_records import GameJob, GameRecord, in_order
 
@@ -57,12 +58,14 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     uncertainty: float
 
 
-class Standings(msgspec.Struct, frozen=True, kw_only=True):
-    """All rows, best first, and how far the tournament is."""
+class Standings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """All rows, best first, how far the tournament is, the year whose rules apply, and the manifest's `inputs`."""
 
     rows: tuple[Row, ...]
     played: int
     games: int
+    inputs: dict[str, str] = {}
+    edition: str = DEFAULT
 
 
 class _Score:
@@ -86,13 +89,16 @@ class _Score:
         return self.points, self.difference, self.points_for
 
 
-def standings(names: Sequence[str], jobs: Sequence[GameJob], records: Iterable[GameRecord]) -> Standings:
+def standings(
+    names: Sequence[str], jobs: Sequence[GameJob], records: Iterable[GameRecord], edition: str = DEFAULT
+) -> Standings:
     """The standings after some of the scheduled games.
 
     Args:
         names: Of the entries.
         jobs: The schedule.
         records: Of games played, in any order; games that are not of the schedule do not count.
+        edition: The year whose rules apply.
     """
     played = in_order(list(records), [job.key for job in jobs])
     scores = {name: _Score() for name in names}
@@ -124,12 +130,11 @@ def standings(names: Sequence[str], jobs: Sequence[GameJob], records: Iterable[G
                 uncertainty=ratings[name][1],
             )
         )
-    return Standings(rows=tuple(rows), played=len(played), games=len(jobs))
+    return Standings(rows=tuple(rows), played=len(played), games=len(jobs), edition=edition)
 
 
-def write_standings(path: Path, names: Sequence[str], jobs: Sequence[GameJob], records: list[GameRecord]) -> Standings:
-    """Compute the standings and leave them as standings.json and standings.csv."""
-    table = standings(names, jobs, records)
+def write_standings(path: Path, table: Standings) -> Standings:
+    """Leave the standings as standings.json and standings.csv."""
     with disk_errors(path):
         write_record(path / "standings.json", table)
         replace_file(path / "standings.csv", as_csv(table).encode())

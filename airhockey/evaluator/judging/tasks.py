@@ -11,7 +11,6 @@ from airhockey.envs.editions import Edition
 from airhockey.evaluator.runs.records import EpisodeRecord
 
 CLASSES = ("Deployable", "Improvable", "Non-deployable")  # from best to worst
-PHASES = {"3dof": "phase-1", "7dof": "phase-2"}
 OFFICIAL_EPISODES = 1000
 """What the limits of the deployability classes are made for."""
 COMPUTATION_TIME = "computation_time"
@@ -96,7 +95,7 @@ def score(success: Mapping[str, float], rules: Edition) -> tuple[str | None, flo
     """
     for robot, weights in rules.score_weights.items():
         if weights.keys() == success.keys():
-            return PHASES[robot], weighted(success, weights)
+            return rules.phases[robot], weighted(success, weights)
     return None, None
 
 

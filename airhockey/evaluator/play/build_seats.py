@@ -1,20 +1,26 @@
 """Agents take their seats at an environment, in the interpolation orders that were asked for or that they want."""
 
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from airhockey.errors import ConfigurationError
-from airhockey.evaluator.isolation.failures import agent_failures
+from airhockey.errors import AirHockeyError, ConfigurationError, EnvironmentFault
+from airhockey.evaluator.isolation.failures import agent_failures, describe
 from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.isolation.limits import Limits
+from airhockey.evaluator.isolation.modes import Mode, choose
+from airhockey.evaluator.play.blame import fault_of_machine
 from airhockey.evaluator.play.seat import Care, Seat
 from airhockey.evaluator.play.seeding import seed_global_generators
 from airhockey.evaluator.runs.game_records import SIDES
 from airhockey.evaluator.runs.records import Order
+
+if TYPE_CHECKING:
+    from airhockey.evaluator.isolation.modes import Mode
 
 Orders = tuple[int | None, ...]
 
@@ -55,11 +61,16 @@ class Entrant:
         except ConfigurationError:
             return 3  # the builder will say the same
 
-    def build(self, env: Any, agent_id: int) -> AgentHandle:
+    @property
+    def mode(self) -> "Mode":
+        """Where it is to live; raises `ConfigurationError` where this machine cannot have that."""
+
+        return choose(self.agent, None if self.isolate == "auto" else self.isolate).mode
+
+    def build(self, env: Any, agent_id: int, mode: "Mode") -> AgentHandle:
         """The agent, made for this environment. Raises what its code raises."""
         from airhockey.agents import AGENTS
         from airhockey.evaluator.isolation.build import build_agent
-        from airhockey.evaluator.isolation.modes import choose
 
         kwargs: dict[str, Any] = {}
         if self.order != "agent" and self.agent in AGENTS:
@@ -69,9 +80,8 @@ class Entrant:
             kwargs["settings"] = self.settings
         if self.parameters is not None:
             kwargs["parameters"] = self.parameters
-        mode = choose(self.agent, None if self.isolate == "auto" else self.isolate).mode
         return build_agent(
-            self.agent, env, agent_id, mode=mode, limits=self.limits, seed=self.seed, python=self.python, **kwargs
+            self.agent, env, agent_id, mode=self.mode, limits=self.limits, seed=self.seed, python=self.python, **kwargs
         )
 
 
@@ -85,10 +95,13 @@ def build_seats(
         entrants: Who plays.
         care: How they are taken care of.
         seed: Of the generators that agents in this process share, while they are built.
+
+    Raises:
+        EnvironmentFault: The environment could not be made, or this machine failed while an agent was built.
     """
 
     def build(orders: Orders) -> tuple[Any, tuple[Seat, ...]]:
-        env = make(orders)
+        env = _made(make, orders)
         if seed is not None:
             seed_global_generators(seed)
         return env, tuple(_seat(entrant, env, k, care) for k, entrant in enumerate(entrants))
@@ -108,15 +121,34 @@ def build_seats(
     return build(wanted)
 
 
+def _made(make: Callable[[Orders], Any], orders: Orders) -> Any:
+    """The environment; what is not said by us, such as an error of the compiler, is a fault of the machine or installation."""
+    try:
+        return make(orders)
+    except AirHockeyError:
+        raise
+    except Exception as error:
+        raise EnvironmentFault(
+            f"the environment cannot be made here, which is no agent's fault: {describe(error)}"
+        ) from error
+
+
 def _seat(entrant: Entrant, env: Any, k: int, care: Care) -> Seat:
+    mode, began = entrant.mode, time.perf_counter()
     try:
         with care.watch.over(SIDES[k]):
-            agent = entrant.build(env, k + 1)
+            agent = entrant.build(env, k + 1, mode)
     except agent_failures() as failure:
+        fault = fault_of_machine(failure, entrant.agent, entrant.mode)
+        if fault is not None:
+            raise fault from failure
         seat = Seat(None, env.formats[k], care, SIDES[k])
         seat.fail_to_build(failure)
-        return seat
-    return Seat(agent, env.formats[k], care, SIDES[k])
+        seat.isolation = mode
+    else:
+        seat = Seat(agent, env.formats[k], care, SIDES[k])
+    seat.build_time = time.perf_counter() - began
+    return seat
 
 
 def _all_there(seats: Sequence[Seat], orders: Orders) -> bool:

@@ -140,6 +140,7 @@ class GamePlay:
             away=away,
             winner=winner(self._rules, self.options.variant, self.options.steps, home, away),
             events=tuple(sorted(self.events, key=lambda event: event.step)),
+            edition=self.options.edition,
         )
 
     def status(self, rate: float) -> Status:
@@ -187,6 +188,7 @@ class GamePlay:
             violations=dict(penalties.count.violations),
             held=penalties.held,
             computation_time=penalties.computation_time,
+            process=self.seats[k].process,
             failure=self.seats[k].failure,
         )
 
@@ -238,8 +240,9 @@ class GamePlayer:
         secret = self.options.agent_seed
         seed = functools.partial(np.random.SeedSequence, job.seed if secret is None else (int(secret, 16), job.seed))
         given = self.options.isolate, Limits(patience=self.options.patience), None
-        home = Entrant(job.home_agent, job.home_order, *given, seed(spawn_key=(2, 1)))
-        away = Entrant(job.away_agent, job.away_order, *given, seed(spawn_key=(2, 2)))
+        seeds = seed(spawn_key=(2, 1)), seed(spawn_key=(2, 2))
+        home = Entrant(job.home_agent, job.home_order, *given, seeds[0], job.home_python, job.home_settings)
+        away = Entrant(job.away_agent, job.away_order, *given, seeds[1], job.away_python, job.away_settings)
         make = functools.partial(envs.make, "tournament", disturbances=self.profile, edition=self.options.edition)
         care = Care(self.options.clock, TIME_LIMIT, failed_in_game, watch or Watch())
         env, seats = build_seats(make, (home, away), care, seed(spawn_key=(2,)))
@@ -292,5 +295,6 @@ def lost(job: GameJob, options: GameOptions, reason: str, guilty: Side | None) -
         away=away,
         winner=winner(rules, options.variant, options.steps, home, away),
         events=(Event(step=0, what="forfeit", who=guilty, why=reason),),
+        edition=options.edition,
     )
     return Game(record, np.empty((0, 0), dtype=np.float32))

@@ -5,15 +5,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from airhockey.envs.specs import CONTROL_PERIOD
-from airhockey.errors import ActionError, SimulationError
+from airhockey.evaluator.play.blame import fault_of, fault_of_observation, guilty_of
 from airhockey.evaluator.play.seat import Seat
-
-Array = NDArray[np.float64]
-HUGE = 1e6
-"""No command of a robot has entries like this; one that does is what the simulation failed over."""
 
 
 class Rollout:
@@ -38,6 +33,7 @@ class Rollout:
         self.observation: Any = None
         self.steps, self.reward, self.over = 0, 0.0, False
         self.info: dict[str, Any] = {}
+        self._before = tuple(seat.action for seat in seats)
         self._period, self._next = (CONTROL_PERIOD / real_time if real_time > 0.0 else 0.0), 0.0
 
     @property
@@ -49,23 +45,33 @@ class Rollout:
         """Begin, with the seed; or serve again, going on with the random streams.
 
         `episode_start` comes before `reset`, as in the official core.
+
+        Raises:
+            EnvironmentFault: The environment failed.
         """
         for seat in self.seats:
             seat.start()
         seed, self._seed, self.over = self._seed, None, False
-        self.observation = self.env.reset(seed=seed)
+        try:
+            self.observation = self.env.reset(seed=seed)
+        except Exception as error:
+            raise fault_of(self.env, error, 0) from error
         self._next = time.perf_counter()
         return self.observation
 
     def step(self) -> bool:
-        """One control step; False where it was not finished, because an agent has failed."""
+        """One control step; False where it was not finished, because an agent has failed.
+
+        Raises:
+            EnvironmentFault: The simulation failed, and over nobody's command; or an agent, over an impossible observation.
+        """
         self.steps = number = self.steps + 1
         seen, seats = self.observation, self.seats
         if len(seats) == 1:
             seat = seats[0]
             seat.act(seen, number)
             if seat.failure is not None:
-                return False
+                return self._failed(number)
             action: Any = seat.action
         else:
             home, away = seats
@@ -73,13 +79,14 @@ class Rollout:
             home.act(seen[:half].copy(), number)
             away.act(seen[half:].copy(), number)
             if home.failure is not None or away.failure is not None:
-                return False
+                return self._failed(number)
             action = (home.action, away.action)
         try:
             self.observation, self.reward, self.over, self.info = self.env.step(action)
-        except (ActionError, SimulationError) as error:
+        except Exception as error:
             self._blame(error)
             return False
+        self._before = action if len(seats) == 2 else (action,)
         if self._period:
             self._keep_pace()
         return True
@@ -93,8 +100,16 @@ class Rollout:
         else:
             self._next -= left
 
-    def _blame(self, error: BaseException) -> None:
-        """The simulation failed: over the seat whose command was absurd, or over all."""
-        absurd = [seat for seat in self.seats if np.abs(seat.action).max() > HUGE]
-        for seat in absurd or self.seats:
+    def _failed(self, step: int) -> bool:
+        """An agent did, unless what it saw was impossible; an agent that is gone saw nothing."""
+        if not np.isfinite(self.observation).all():
+            raise fault_of_observation(self.env, step)
+        return False
+
+    def _blame(self, error: Exception) -> None:
+        """The simulation failed: over the seats whose command was absurd, or over nobody's."""
+        guilty = guilty_of(self.seats, self._before)
+        if not guilty:
+            raise fault_of(self.env, error, self.steps) from error
+        for seat in guilty:
             seat.fail(error, self.steps)

@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from airhockey.evaluator.isolation.failures import agent_failures, describe
 from airhockey.evaluator.isolation.handle import AgentHandle
+from airhockey.evaluator.play.blame import fault_of_machine
 from airhockey.evaluator.play.watchdog import Watch
 from airhockey.evaluator.runs.game_records import HOME, Side
+from airhockey.evaluator.runs.records import AgentProcess
 
 Array = NDArray[np.float64]
 
@@ -53,6 +55,8 @@ class Seat:
         action: Its latest command, in the shape of `form`; zeros before the first.
         seconds: The time that it took.
         late: Whether that was too long, and the command is its previous position with zero velocity.
+        isolation: How far the agent is kept apart, see `AgentHandle`.
+        build_time, start_time: Wall time to build it, and of its longest start since the first of this episode, in [s].
         position: The joints that it had at the latest serve, in [rad], to be held if its first command is late. Shape (n,).
     """
 
@@ -63,6 +67,8 @@ class Seat:
         self.clock = agent.clock(care.clock) if agent is not None else time.perf_counter
         self.action = np.zeros(form.shape)
         self.seconds, self.late = 0.0, False
+        self.isolation = "" if agent is None else agent.isolation
+        self.build_time = self.start_time = 0.0
         self.position: Array | None = None
         self._care, self._watch, self._time_limit = care, care.watch, care.time_limit
         self._timely: Array | None = None
@@ -73,29 +79,42 @@ class Seat:
         return "" if self.agent is None else self.agent.phase
 
     @property
+    def process(self) -> AgentProcess:
+        """Where the agent lived, and what it took besides its commands, as records say it."""
+        return AgentProcess(isolation=self.isolation, build_time=self.build_time, start_time=self.start_time)
+
+    @property
     def target(self) -> Any:
         """Where it wants its mallet; see `AgentHandle`."""
         return None if self.agent is None else self.agent.target
 
     def seed(self, sequence: np.random.SeedSequence) -> None:
         """Seed the generators that the agent has to itself, when it is started."""
+        self.start_time = 0.0
         if self.agent is not None:
             self.agent.seed(sequence)
 
     def start(self) -> None:
-        """A serve begins; an agent that failed before does not hear of it."""
+        """A serve begins; an agent that failed before does not hear of it. Raises `EnvironmentFault`, as `act` does."""
         if self.agent is None or self.failure is not None:
             return
+        began = time.perf_counter()
         try:
             with self._watch.over(self.side):
                 self.agent.episode_start()
                 self._preprocessors = tuple(self.agent.preprocessors)
             self._act, self._timely = self.agent.act, None
         except agent_failures() as failure:
-            self.fail(failure, 0)
+            self._fail(failure, 0)
+        finally:
+            self.start_time = max(self.start_time, time.perf_counter() - began)
 
     def act(self, observation: Array, step: int) -> None:
-        """Ask for the command of a control step, from 1; it is then in `action`, or the seat has failed."""
+        """Ask for the command of a control step, from 1; it is then in `action`, or the seat has failed.
+
+        Raises:
+            EnvironmentFault: The machine failed, and not the agent.
+        """
         if self.failure is not None:
             return
         try:
@@ -112,7 +131,7 @@ class Seat:
             action = self.form.check(action, step)
         except agent_failures() as failure:
             self.late = False
-            self.fail(failure, step)
+            self._fail(failure, step)
             return
         self.late = self.seconds > self._time_limit
         if self.late:
@@ -130,6 +149,13 @@ class Seat:
     def fail(self, failure: BaseException, step: int) -> None:
         """It failed in a control step, from 1; 0 in `episode_start`."""
         self.error, self.failure = failure, self._care.reason(failure, step)
+
+    def _fail(self, failure: BaseException, step: int) -> None:
+        """Its code raised: it failed, or the machine did under one of our own players."""
+        fault = None if self.agent is None else fault_of_machine(failure, self.agent)
+        if fault is not None:
+            raise fault from failure
+        self.fail(failure, step)
 
     def stop(self) -> None:
         """Tell the agent that it is over; one that has failed is ended without a word."""

@@ -5,7 +5,8 @@ from typing import Literal
 
 import msgspec
 
-from airhockey.evaluator.runs.records import Order, StepTime
+from airhockey.envs.editions import DEFAULT
+from airhockey.evaluator.runs.records import AgentProcess, Order, StepTime
 
 Side = Literal["home", "away"]
 Winner = Literal["home", "away", "draw"]
@@ -30,7 +31,7 @@ class GameOptions(msgspec.Struct, frozen=True, kw_only=True):
         disturbances: Name of a profile or absolute path of a YAML file.
         clock: What the time of `draw_action` is measured with; "cpu" does not mind a busy machine.
         variant: What becomes of a non-deployable player, see `VARIANTS`.
-        edition: Rule edition.
+        edition: The year whose rules apply.
         isolate: Where agents live; "auto" is with the evaluator for our own, elsewhere for submissions, as far away as the
             machine can have them.
         patience: Longest time for an answer of an agent that lives elsewhere, in [s].
@@ -42,7 +43,7 @@ class GameOptions(msgspec.Struct, frozen=True, kw_only=True):
     disturbances: str = "ideal"
     clock: Literal["wall", "cpu"] = "cpu"
     variant: Variant = "package"
-    edition: str = "2023"
+    edition: str = DEFAULT
     isolate: Literal["auto", "none", "process", "sandbox"] = "none"
     patience: float = 60.0
     real_time: float = 0.0
@@ -57,6 +58,9 @@ class GameJob(msgspec.Struct, frozen=True):
         home, away: Names of the players.
         home_agent, away_agent: What they are: a name of the registry or the absolute path of a submission.
         seed: Of the game.
+        home_order, away_order: Interpolation orders.
+        home_python, away_python: Other interpreters for submissions' processes, see `records.Options.python`.
+        home_settings, away_settings: Of our own players' controllers, see `records.Options.settings`.
     """
 
     key: str
@@ -67,6 +71,16 @@ class GameJob(msgspec.Struct, frozen=True):
     seed: int
     home_order: Order = "agent"
     away_order: Order = "agent"
+    home_python: str | None = None
+    away_python: str | None = None
+    home_settings: tuple[str, ...] = ()
+    away_settings: tuple[str, ...] = ()
+
+    def swapped(self) -> "GameJob":
+        """The same game with the players on each other's side."""
+        sides = [(f"home{what}", f"away{what}") for what in ("", "_agent", "_order", "_python", "_settings")]
+        there = {one: getattr(self, other) for home, away in sides for one, other in ((home, away), (away, home))}
+        return msgspec.structs.replace(self, **there)
 
 
 class Status(msgspec.Struct, frozen=True, kw_only=True):
@@ -127,6 +141,7 @@ class PlayerResult(msgspec.Struct, frozen=True, kw_only=True):
         violations: Constraint name -> number of episodes that violated it; "computation_time" is one of them.
         held: Steps in which its command was held because it took too long.
         computation_time: Of `draw_action`, in [s].
+        process: Where it lived.
         failure: Why it forfeited.
     """
 
@@ -138,6 +153,7 @@ class PlayerResult(msgspec.Struct, frozen=True, kw_only=True):
     violations: dict[str, int]
     held: int
     computation_time: StepTime
+    process: AgentProcess = AgentProcess()
     failure: str | None = None
 
     @property
@@ -147,7 +163,7 @@ class PlayerResult(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class GameRecord(msgspec.Struct, frozen=True, kw_only=True):
-    """One line of a journal of games."""
+    """One line of a journal of games; `edition` is the year whose rules applied."""
 
     job: GameJob
     steps: int
@@ -155,6 +171,7 @@ class GameRecord(msgspec.Struct, frozen=True, kw_only=True):
     away: PlayerResult
     winner: Winner
     events: tuple[Event, ...]
+    edition: str = DEFAULT
 
     @property
     def key(self) -> str:

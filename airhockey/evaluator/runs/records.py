@@ -1,10 +1,13 @@
 """What a run is asked to do and what it leaves behind, as typed records that travel as JSON."""
 
+from collections.abc import Iterable
 from typing import Literal
 
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
+
+from airhockey.envs.editions import DEFAULT, available, edition
 
 Trajectory = dict[str, NDArray[np.float64]]
 """One episode's arrays by name; `airhockey.evaluator.play.episode.Recorder.trajectory` says which."""
@@ -24,7 +27,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
         disturbances: Name of a profile or absolute path of a YAML file.
         interpolation_order: See `Order`.
         clock: What the time of `draw_action` is measured with.
-        edition: Rule edition.
+        edition: The year whose rules apply.
         isolate: Where the agent lives: with the evaluator, in a process of its own, or in a sandbox.
         patience: Longest time for an answer of an agent that lives elsewhere, in [s].
         real_time: Pace of the steps relative to the robot's, for agents that think beside them; 0: as fast as possible.
@@ -42,7 +45,7 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     disturbances: str = "ideal"
     interpolation_order: Order = "agent"
     clock: Literal["wall", "cpu"] = "cpu"
-    edition: str = "2023"
+    edition: str = DEFAULT
     isolate: Literal["none", "process", "sandbox"] = "none"
     patience: float = 60.0
     real_time: float = 0.0
@@ -50,6 +53,13 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     settings: tuple[str, ...] = ()
     parameters: str | None = None
     agent_seed: str | None = None
+
+    def __post_init__(self) -> None:
+        """Environments go by the names of their edition, whichever they were given by; checks complain about others."""
+        if self.edition in available():
+            names = edition(self.edition).names
+            environments = tuple(names.get(name, name) for name in self.environments)
+            msgspec.structs.force_setattr(self, "environments", environments)
 
 
 class Job(msgspec.Struct, frozen=True):
@@ -66,6 +76,26 @@ class StepTime(msgspec.Struct, frozen=True, kw_only=True):
     max: float = 0.0
 
 
+class AgentProcess(msgspec.Struct, frozen=True, kw_only=True):
+    """Where an agent lived, and the wall time that it took besides its commands.
+
+    Attributes:
+        isolation: How far it was kept apart, by what, and what was not limited; "none": it lived with the evaluator; "": there
+            was none, or the journal is older than this field.
+        build_time: To build it, in [s].
+        start_time: Of the longest start of an episode or serve, in [s].
+    """
+
+    isolation: str = ""
+    build_time: float = 0.0
+    start_time: float = 0.0
+
+
+def isolation_of(processes: Iterable[AgentProcess]) -> str:
+    """How agents were kept apart, as their records say; "" where none does."""
+    return " / ".join(dict.fromkeys(process.isolation for process in processes if process.isolation))
+
+
 class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
     """One line of the journal.
 
@@ -77,7 +107,9 @@ class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
         absorbing: Whether the task ended the episode; False at the horizon and where the agent failed.
         violations: Constraint name -> number of steps that violated it.
         computation_time: Of `draw_action`.
+        process: Where the agent lived.
         error: Why the agent failed the episode; None where it did not.
+        edition: The year whose rules applied.
     """
 
     env: str
@@ -87,7 +119,9 @@ class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
     absorbing: bool = False
     violations: dict[str, int] = {}
     computation_time: StepTime = StepTime()
+    process: AgentProcess = AgentProcess()
     error: str | None = None
+    edition: str = DEFAULT
 
     @property
     def job(self) -> Job:
@@ -108,11 +142,23 @@ class Episode(msgspec.Struct, frozen=True):
 
 
 class RunTime(msgspec.Struct, frozen=True, kw_only=True):
-    """Time that `draw_action` took over a whole task, in [s]."""
+    """Time that `draw_action` took over a whole task, in [s].
+
+    Attributes:
+        late: Steps in which it took longer than a control step lasts.
+    """
 
     mean: float
     p99: float
     max: float
+    late: int = 0
+
+
+class PreparationTime(msgspec.Struct, frozen=True, kw_only=True):
+    """The longest wall times that an agent took besides its commands, in [s]."""
+
+    build_agent: float = 0.0
+    episode_start: float = 0.0
 
 
 class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
@@ -123,6 +169,9 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
         penalty: Penalty points, summed over the episodes.
         violations: Constraint name -> number of episodes that violated it.
         agent_errors: Number of episodes that the agent failed.
+        inputs: See `Manifest`.
+        edition: The year whose rules applied.
+        isolation: How far the agent was kept apart, see `AgentProcess`; all of them where machines differ.
     """
 
     env: str
@@ -136,6 +185,10 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
     violations: dict[str, int]
     computation_time: RunTime
     agent_errors: int
+    inputs: dict[str, str] = {}
+    edition: str = DEFAULT
+    isolation: str = ""
+    preparation_time: PreparationTime = PreparationTime()
 
     @property
     def tasks(self) -> "tuple[TaskResult, ...]":
@@ -148,14 +201,16 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
 
     Attributes:
         deployability: The worst task's class.
-        phase: "phase-1" (3dof) or "phase-2" (7dof); None unless every task of it was played.
+        phase: "phase-1" (3dof) or "phase-2" (7dof), in the edition of 2025 "qualifying"; None unless all its tasks were played.
         score: Weighted success of the phase's tasks, 0 … 1.
+        edition: The year whose rules applied.
     """
 
     results: tuple[TaskResult, ...]
     deployability: str
     phase: str | None
     score: float | None
+    edition: str = DEFAULT
 
     @property
     def tasks(self) -> tuple[TaskResult, ...]:

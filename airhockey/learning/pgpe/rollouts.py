@@ -9,6 +9,7 @@ from airhockey.agents.parameters import convert
 from airhockey.agents.thesis.parameters import ThesisParameters
 from airhockey.evaluator.isolation.failures import agent_failures, describe
 from airhockey.evaluator.play import seeding
+from airhockey.evaluator.play.blame import fault_of_machine
 from airhockey.evaluator.play.rollout import Rollout
 from airhockey.evaluator.play.seat import Seat
 from airhockey.learning.pgpe.records import Outcome, PgpeManifest, RolloutJob, Settings
@@ -45,6 +46,9 @@ class Rollouts:
         try:
             seat = self._seat(stage, job.theta)
         except agent_failures() as failure:
+            fault = fault_of_machine(failure, "thesis")
+            if fault is not None:
+                raise fault from failure
             return Outcome(error=describe(failure))
         return self._play(stage, seat, seed)
 

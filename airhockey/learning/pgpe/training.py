@@ -16,6 +16,7 @@ from airhockey.errors import AirHockeyError, ConfigurationError
 from airhockey.evaluator.engines.engine import InProcess
 from airhockey.evaluator.engines.pool import JobFailed, Pool
 from airhockey.evaluator.engines.processes import Processes
+from airhockey.evaluator.play.blame import machine_ended
 from airhockey.learning.diverged import DivergedError
 from airhockey.learning.pgpe.folder import TrainingFolder
 from airhockey.learning.pgpe.hyperpolicy import Hyperpolicy
@@ -88,7 +89,8 @@ def train(
 
     Raises:
         DivergedError: The search went astray; the folder holds everything up to the last good iteration.
-        AirHockeyError: The disk is full, or workers do not start.
+        AirHockeyError: The disk is full.
+        EnvironmentFault: The environment, its disturbances or this machine failed.
         KeyboardInterrupt: The user's; the finished iterations are kept.
     """
     settings = folder.manifest.options
@@ -125,10 +127,11 @@ class _Stand:
         outcomes: dict[tuple[int, int], Outcome] = {}
         with contextlib.closing(self._pool.run(jobs)) as results:
             for job, result in results:
-                outcome = Outcome(error=result.reason) if isinstance(result, JobFailed) else result
-                outcomes[job.candidate, job.episode] = outcome
+                if isinstance(result, JobFailed):
+                    raise machine_ended(result.reason)
+                outcomes[job.candidate, job.episode] = result
                 if self._on_episode is not None:
-                    self._on_episode(outcome)
+                    self._on_episode(result)
         return [[outcomes[candidate, episode] for episode in range(self._episodes)] for candidate in range(len(theta))]
 
 
@@ -149,6 +152,7 @@ def search_of(settings: Settings) -> Search:
         normalize=settings.normalize,
         symmetric=settings.symmetric,
         sigma_share=settings.sigma_share,
+        sigma_rule=settings.sigma_rule,
     )
 
 

@@ -7,10 +7,10 @@ from typing import Any
 import msgspec
 
 from airhockey.envs.disturbances import Disturbances
-from airhockey.envs.editions import edition
-from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES, PHASES
+from airhockey.evaluator.judging.tasks import OFFICIAL_EPISODES
 from airhockey.evaluator.judging.tasks import score as phase_score
 from airhockey.evaluator.runs.reader import Match, Run, Source, Tournament, Unreadable, short_name
+from airhockey.evaluator.runs.records import isolation_of
 from airhockey.reporting import words
 from airhockey.reporting.blocks import Row, badge, details, facts, paragraphs, section, table
 from airhockey.reporting.markup import Child, Markup, element, joined
@@ -65,6 +65,7 @@ def conditions(sources: Iterable[Source], labels: dict[int, str]) -> Markup:
         "conditions",
         "Conditions",
         table("Conditions by folder", ("", *(labels[id(source)] for source in shown)), rows, numbers_from=99),
+        _contents(shown, labels),
         *(details(f"Disturbances {profile.profile} in full", facts(_flat(profile))) for profile in profiles),
     )
 
@@ -93,8 +94,8 @@ def _phases(tasks: Sequence[Task]) -> list[str]:
         own = [task for task in tasks if task.run is run]
         phase, score = phase_score({task.env: task.verdict.success for task in own}, own[0].rules)
         if score is not None:
-            robot = next(robot for robot, name in PHASES.items() if name == phase)
-            weights = edition(own[0].rules.edition).score_weights[robot]
+            rules = own[0].rules
+            weights = next(rules.score_weights[robot] for robot, name in rules.phases.items() if name == phase)
             formula = " + ".join(f"{weight:g} {env}" for env, weight in weights.items())
             said.append(f"{own[0].label}: {phase} score {score:.3f} ({formula}).")
     return said
@@ -111,7 +112,7 @@ def _conditions_of(source: Run | Match | Tournament) -> dict[str, str]:
             "edition": options.edition,
             "clock": options.clock,
             "interpolation order": str(options.interpolation_order),
-            "isolation": options.isolate,
+            "isolation": isolation_of(record.process for record in source.records) or options.isolate,
         }
     elif not isinstance(source, Run) and source.manifest:
         game = source.manifest.options.game
@@ -121,10 +122,26 @@ def _conditions_of(source: Run | Match | Tournament) -> dict[str, str]:
             "clock": game.clock,
             "steps of a game": f"{game.steps:,}",
             "rules": game.variant,
+            "isolation": isolation_of(side.process for record in source.records for side in (record.home, record.away))
+            or game.isolate,
         }
     if source.created:
         found["begun"] = source.created.replace("T", " ")
     return found | source.versions
+
+
+def _contents(sources: Iterable[Run | Match | Tournament], labels: dict[int, str]) -> Markup | None:
+    """Agents and files that decided the results, by their content; None where all came with airhockey."""
+    rows: list[Row] = []
+    for source in sources:
+        for path, digest in (source.manifest.inputs if source.manifest else {}).items():
+            rows.append((labels[id(source)], short_name(path), element("code", digest)))
+    if not rows:
+        return None
+    return joined(
+        element("h3", "Agents and files by their content"),
+        table("SHA-256 of agents and files", ("folder", "agent or file", "SHA-256"), rows, numbers_from=99),
+    )
 
 
 def _flat(profile: Disturbances) -> list[tuple[str, Child]]:

@@ -50,10 +50,10 @@ def standings_section(tournament: Tournament, identifier: str, links: Child) -> 
 
 def tournament_standings(tournament: Tournament, names: Sequence[str]) -> Standings:
     """The standings; by the games alone where the schedule is not known."""
-    jobs = [record.job for record in tournament.records]
-    if tournament.manifest is not None:
-        jobs = schedule(tournament.manifest.options)
-    return standings(names, jobs, tournament.records)
+    if tournament.manifest is None:
+        return standings(names, [record.job for record in tournament.records], tournament.records)
+    options = tournament.manifest.options
+    return standings(names, schedule(options), tournament.records, options.game.edition)
 
 
 def standings_table(found: Standings) -> Markup:

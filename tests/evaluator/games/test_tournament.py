@@ -27,6 +27,8 @@ from airhockey.evaluator.tournament import begin_tournament, play_tournament, re
 from submissions import make_submission
 
 STEPS = 300
+SECRET = "1f"
+"""Of the agents' seeds: a command would draw another one every time."""
 HOCKEY = [sys.executable, "-m", "airhockey.cli", "tournament", "--jobs", "1", "--quiet"]
 Submission = Callable[..., str]
 
@@ -48,7 +50,7 @@ def entries(tmp_path_factory: pytest.TempPathFactory) -> tuple[Entry, ...]:
 @pytest.fixture(scope="module")
 def straight(entries: tuple[Entry, ...], tmp_path_factory: pytest.TempPathFactory) -> Any:
     """All five entries, played without interruption."""
-    options = TournamentOptions(entries=entries, seed=2, game=GameOptions(steps=STEPS))
+    options = TournamentOptions(entries=entries, seed=2, game=GameOptions(steps=STEPS, agent_seed=SECRET))
     folder = tmp_path_factory.mktemp("tournament") / "straight"
     table = play_tournament(begin_tournament(options, folder), Processes(2))
     rows = {row.name: row for row in table.rows}
@@ -81,7 +83,19 @@ def killed_after(count: int, folder: Path, command: list[str]) -> None:
 def test_killed_twice_resumed_and_extended(entries: tuple[Entry, ...], straight: Any, tmp_path: Path) -> None:
     folder = tmp_path / "run"
     out = ["--out", str(folder)]
-    begin = [*HOCKEY, *typed(entries[:4]), "--steps", str(STEPS), "--seed", "2", "--isolate", "none", *out]
+    begin = [
+        *HOCKEY,
+        *typed(entries[:4]),
+        "--steps",
+        str(STEPS),
+        "--seed",
+        "2",
+        "--agent-seed",
+        SECRET,
+        "--isolate",
+        "none",
+        *out,
+    ]
     killed_after(2, folder, begin)
     killed_after(len(read_journal(folder, GameRecord).records) + 2, folder, [*HOCKEY, "--resume", *out])
     assert len(read_journal(folder, GameRecord).records) < 12
@@ -96,7 +110,7 @@ def test_killed_twice_resumed_and_extended(entries: tuple[Entry, ...], straight:
 
 
 def test_on_dask_with_a_worker_killed(entries: tuple[Entry, ...], straight: Any, tmp_path: Path) -> None:
-    options = TournamentOptions(entries=entries, seed=2, game=GameOptions(steps=STEPS))
+    options = TournamentOptions(entries=entries, seed=2, game=GameOptions(steps=STEPS, agent_seed=SECRET))
     killed = []
 
     def kill_a_worker(*_: Any) -> None:
@@ -121,7 +135,7 @@ def descendants(pid: int) -> set[int]:
 
 
 def test_with_a_process_killed_in_the_middle_of_a_game(entries: tuple[Entry, ...], tmp_path: Path) -> None:
-    options = TournamentOptions(entries=entries[:2], seed=2, game=GameOptions(steps=STEPS))
+    options = TournamentOptions(entries=entries[:2], seed=2, game=GameOptions(steps=STEPS, agent_seed=SECRET))
     play_tournament(begin_tournament(options, tmp_path / "straight"))
     folder = begin_tournament(options, tmp_path / "run")
     thread = threading.Thread(target=kill_once_playing, args=(folder.live,))

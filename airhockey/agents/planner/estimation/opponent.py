@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.agents.base import task_of
 from airhockey.agents.compiling import compiled
 from airhockey.agents.small_matrices import factor, solve_backward, solve_forward
 
@@ -33,8 +34,8 @@ EXPECTED_SPREAD = 0.02
 class OpponentTrack:
     """Fits  p(t) = c + a₁ cos ωt + b₁ sin ωt + a₂ cos 2ωt + b₂ sin 2ωt  to what was seen: least squares with a prior.
 
-    In `7dof-hit` the figure of eight is known, and so is its phase at the serve; it is what the prior expects there. Besides the
-    best rate ω so far, one other is tried per observation.
+    In `7dof-hit` and `hit` the figure of eight is known, and so is its phase at the serve; it is what the prior expects there.
+    Besides the best rate ω so far, one other is tried per observation.
 
     Attributes:
         swinging: Whether the fit is good enough to be believed.
@@ -43,7 +44,7 @@ class OpponentTrack:
     def __init__(self, env_info: Mapping[str, Any]) -> None:
         """Compile."""
         self._dt = float(env_info["dt"])
-        self._known = env_info["env_name"] == "7dof-hit"
+        self._known = task_of(env_info) == "hit" and env_info["n_agents"] == 2
         self.reset()
         for step in range(LEAST + 1):
             self.update(np.array([0.86, 0.0]), step)

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from airhockey.agents.base import task_of
 from airhockey.agents.compiling import compiled
 from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.workspace import Workspace
@@ -53,7 +54,7 @@ class DeadPuck(Striker):
         Args:
             env_info: Description of the environment.
         """
-        parameters = smash_parameters(spec_of(env_info), in_game=env_info["env_name"] == "tournament")
+        parameters = smash_parameters(spec_of(env_info), in_game=task_of(env_info) == "tournament")
         super().__init__(parameters, float(env_info["dt"]))
         self._model = make_shot_model(parameters, Workspace.of(env_info))
         self._shot: Shot | None = None

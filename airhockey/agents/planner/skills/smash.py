@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from airhockey.agents.base import task_of
 from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.planner.estimation.opponent import OpponentTrack
@@ -26,7 +27,8 @@ class Smash(Striker):
 
     def __init__(self, env_info: Mapping[str, Any]) -> None:
         """Compile the search, so that the first step of a game is not slow."""
-        in_game = env_info["env_name"] == "tournament"
+        task = task_of(env_info)
+        in_game = task == "tournament"
         p = smash_parameters(spec_of(env_info), in_game)
         super().__init__(p, float(env_info["dt"]))
         least = p.least_value_in_game if in_game else p.least_value
@@ -35,7 +37,7 @@ class Smash(Striker):
         self._shot: Shot | None = None
         self._scouted = -1
         self.kind = OPEN
-        self._horizon = env_info["rl_info"].horizon if str(env_info["env_name"]).endswith("hit") else 10**9
+        self._horizon = env_info["rl_info"].horizon if task == "hit" else 10**9
 
     def aim_for(self, kind: Kind) -> None:
         """What kind of shot to look for from now on."""

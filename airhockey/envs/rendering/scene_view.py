@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs import scene
-from airhockey.envs.editions import ROBOTS, edition
+from airhockey.envs.editions import DEFAULT, ROBOTS, edition
 
 Array = NDArray[np.float64]
 STRIKER_JOINTS = 2
@@ -26,11 +26,12 @@ class SceneView:
         n_joints: Of each arm.
     """
 
-    def __init__(self, env: str, edition_name: str = "2023") -> None:
-        rules = edition(edition_name).environment(env)
+    def __init__(self, env: str, edition_name: str = DEFAULT) -> None:
+        year = edition(edition_name)
+        rules = year.environment(env)
         self.robot = ROBOTS[rules.robot]
         self.robots, self.n_joints = rules.robots, self.robot.n_joints
-        self.model = scene.game_model(self.robot, self.robots, visual=True)
+        self.model = scene.game_model(self.robot, self.robots, visual=True, edition_scene=year.scene)
         self.data = mujoco.MjData(self.model)
         self._has_striker = self.robot.universal_height is not None
         self._stride = self.n_joints + (STRIKER_JOINTS if self._has_striker else 0)

@@ -9,14 +9,13 @@ import logging
 import queue
 import socket
 import time
+from collections.abc import Sequence
 from typing import Any
 
 from mujoco.studio import launch_thread, viewer_protocol, web_viewer
 
+from airhockey.envs.rendering.web_guard import Guard
 from airhockey.errors import ConfigurationError
-from airhockey.viewing.key_commands import KeyCommands
-from airhockey.viewing.panel import Panel
-from airhockey.viewing.web_guard import Guard
 
 _STARTING = 30.0  # [s] that a viewer may take to begin
 
@@ -52,16 +51,20 @@ class BoundViewer(web_viewer.WebViewer):
         return int(self._http_port)
 
 
-def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any, str, KeyCommands]:
+def launch(
+    title: str, scene: tuple[Any, Any], host: str, port: int, plugins: Sequence[Any] = (), collects: Sequence[Any] = ()
+) -> tuple[Any, str]:
     """Start the viewer in a thread of its own.
 
     Args:
         title: Of the page.
-        model, data: What is shown first.
+        scene: MuJoCo's model and data that are shown first.
         host, port: To listen on; port 0 for the first free one from 8080.
+        plugins: Of the page.
+        collects: Plug-ins on this side, which are told what the page sends.
 
     Returns:
-        MuJoCo's handle, the page's address, and what collects commands.
+        MuJoCo's handle and the page's address.
 
     Raises:
         ConfigurationError: The address cannot be listened on.
@@ -74,16 +77,15 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
     def target(endpoint: Any) -> None:
         config = viewer_protocol.ViewerConfig(title=title, gfx="web", http_port=port)
         try:
-            viewer = BoundViewer(host, config, endpoint, model=model, plugins=[Panel()])
+            viewer = BoundViewer(host, config, endpoint, model=scene[0], plugins=list(plugins))
         except BaseException as error:
             ports.put(error)
             raise
         ports.put((viewer.port, viewer.guard.token))
         viewer_protocol.run_viewer_loop(viewer)
 
-    commands = KeyCommands()
-    handle = launch_thread.launch_thread(target, sim_plugins=[commands])
-    handle.model, handle.data = model, data
+    handle = launch_thread.launch_thread(target, sim_plugins=list(collects))
+    handle.model, handle.data = scene
     bound = _answer(ports)
     if isinstance(bound, BaseException):
         with contextlib.suppress(BaseException):
@@ -91,7 +93,7 @@ def launch(title: str, model: Any, data: Any, host: str, port: int) -> tuple[Any
         raise ConfigurationError(f"cannot listen on {host}:{port}: {' '.join(str(bound).split())}") from bound
     bound_port, token = bound
     _wait_until_it_listens(host, bound_port)
-    return handle, f"http://{f'[{host}]' if ':' in host else host}:{bound_port}/?token={token}", commands
+    return handle, f"http://{f'[{host}]' if ':' in host else host}:{bound_port}/?token={token}"
 
 
 def check_address(host: str) -> None:

@@ -7,9 +7,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.viewing.marks import Mark, add_to_scene
-from airhockey.viewing.offscreen import new_context
-from airhockey.viewing.scene_view import SceneView
+from airhockey.envs.rendering.marks import Mark, add_to_scene
+from airhockey.envs.rendering.offscreen import new_context
+from airhockey.envs.rendering.scene_view import SceneView
 
 Picture = NDArray[np.uint8]
 QUALITIES = {"fast": (0, 0), "good": (1024, 0), "fine": (4096, 4)}

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs.compiled import MAX_END_EFFECTOR_Y, MIN_END_EFFECTOR_X
 from airhockey.envs.specs import IIWA
 from airhockey.evaluator.analysis.contacts import contacts, hits
+from airhockey.evaluator.runs.disk import opened_hdf5
 
 Array = NDArray[np.float64]
 Table = NDArray[Any]
@@ -76,7 +76,7 @@ def read_task(files: Sequence[Path], env: str) -> TaskData | None:
 
 
 def _read_file(path: Path, env: str) -> Iterator[TaskData]:
-    with h5py.File(path) as file:
+    with opened_hdf5(path) as file:
         group = file.get(env)
         if group is None or "rewards" not in group:
             return

@@ -271,9 +271,6 @@ ENTRIES: dict[str, Make] = {
         builder="class A:\n    def __getattribute__(self, name):\n        raise ValueError('\\x1b[2J' + name)\n"
         "def build_agent(env_info, **k):\n    return A()\n"
     ),
-    "builder: an order that is an object": _folder(
-        builder=GOOD.replace("interpolation_order = 3", "interpolation_order = {}")
-    ),
     "builder: is not there": _with(lambda entry: (entry / "agent_builder.py").unlink()),
     "folder: a link to a file of the host": _with(_link("/etc/passwd")),
     "folder: a link to a folder of the host": _with(_link("/etc", "data")),
@@ -303,7 +300,6 @@ ENTRIES: dict[str, Make] = {
     "folder: metadata that is a pipe": _with(
         lambda entry: _both((entry / "submission.yaml").unlink(), os.mkfifo(entry / "submission.yaml"))
     ),
-    "folder: nobody may read it": _with(lambda entry: (entry / "agent_builder.py").chmod(0)),
     "archive: climbs out": _archive(("../../out.txt", b"x")),
     "archive: absolute": _archive(("/tmp/out.txt", b"x")),
     "archive: of Windows": _archive(("C:\\out.txt", b"x")),

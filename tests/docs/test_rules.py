@@ -1,11 +1,11 @@
 """The pages of the rules are what the editions' files give, and say their numbers."""
 
-import importlib.util
 import re
 from pathlib import Path
 from types import ModuleType
 
 import pytest
+from sources import load_script
 
 from airhockey.envs import editions
 
@@ -14,11 +14,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def rules_pages() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("rules_pages", ROOT / "scripts" / "rules_pages.py")
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return load_script(ROOT, "rules_pages")
 
 
 def test_the_pages_are_those_of_the_editions(rules_pages: ModuleType) -> None:

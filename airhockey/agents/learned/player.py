@@ -72,14 +72,10 @@ class LearnedPlayer(AgentBase):
         network = Network.load(folder / NETWORK)
         try:
             policy = yaml.safe_load((folder / POLICY).read_text(encoding="utf-8"))
-            choice = {
-                "actions": str(policy["actions"]),
-                "repeat": int(policy["repeat"]),
-                "horizon": int(policy["horizon"]),
-            }
+            actions, repeat, horizon = str(policy["actions"]), int(policy["repeat"]), int(policy["horizon"])
         except (OSError, ValueError, KeyError, TypeError, yaml.YAMLError) as error:
             raise ConfigurationError(f"cannot read the policy {str(folder / POLICY)!r}: {error}") from error
-        return cls(env_info, network, **choice, **kwargs)
+        return cls(env_info, network, actions, repeat, horizon, **kwargs)
 
     def _compile(self) -> None:
         """Play a step, so that none has to wait for the compiler."""

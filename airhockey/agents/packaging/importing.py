@@ -54,7 +54,7 @@ def make_importable(checkout: Checkout) -> None:
     while _current:
         _forget(_current.pop())
     _current.append(checkout)
-    sys.path[:0] = dict.fromkeys((str(checkout.root), str(checkout.package)))
+    sys.path[:0] = map(str, checkout.import_path)
     sys.path.append(_known_to_children(checkout.package))
     importlib.invalidate_caches()
     init = checkout.package / "__init__.py"
@@ -74,13 +74,18 @@ def make_importable(checkout: Checkout) -> None:
 def at_the_root(checkout: Checkout) -> Iterator[None]:
     """The root is the working directory, and the first place where children of this process look for modules."""
     before, path = os.getcwd(), os.environ.get("PYTHONPATH")
-    os.environ["PYTHONPATH"] = os.pathsep.join([str(checkout.root), *([path] if path else [])])
+    os.environ["PYTHONPATH"] = os.pathsep.join([*_for_children(checkout), *([path] if path else [])])
     os.chdir(checkout.root)
     try:
         yield
     finally:
         os.chdir(before)
         os.environ.pop("PYTHONPATH") if path is None else os.environ.update(PYTHONPATH=path)
+
+
+def _for_children(checkout: Checkout) -> list[str]:
+    """What children look through first; the package's own folder is none of it, as they know the package by its name."""
+    return [str(folder) for folder in checkout.import_path if folder in (checkout.root, checkout.root / "src")]
 
 
 @contextlib.contextmanager
@@ -111,9 +116,24 @@ def _known_to_children(package: Path) -> str:
 
 def _forget(checkout: Checkout) -> None:
     """Modules of this submission are no longer found."""
-    folders = {str(checkout.root), str(checkout.package), _known_to_children(checkout.package)}
+    folders = {*map(str, checkout.import_path), _known_to_children(checkout.package)}
     sys.path[:] = [entry for entry in sys.path if entry not in folders]
-    for name, module in list(sys.modules.items()):
-        file = getattr(module, "__file__", None)
-        if name == PACKAGE or (isinstance(file, str) and Path(file).is_relative_to(checkout.root)):
-            del sys.modules[name]
+    gone = [
+        name
+        for name, module in list(sys.modules.items())
+        if name.partition(".")[0] == PACKAGE or any(place.is_relative_to(checkout.root) for place in _places(module))
+    ]
+    for name in gone:
+        del sys.modules[name]
+
+
+def _places(module: ModuleType | None) -> list[Path]:
+    """The file of a module, or the folders of a package without `__init__.py`."""
+    file = getattr(module, "__file__", None)
+    if isinstance(file, str):
+        return [Path(file)]
+    spec = getattr(module, "__spec__", None)
+    try:
+        return [Path(folder) for folder in (getattr(spec, "submodule_search_locations", None) or ())]
+    except KeyError:  # the package around it is gone
+        return []

@@ -22,6 +22,14 @@ SCRATCH = "/tmp"
 _NOBODY = "65534"
 _SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64")
 _SETTINGS = ("/etc/ld.so.cache", "/etc/ld.so.conf", "/etc/ld.so.conf.d", "/etc/alternatives", "/etc/localtime")
+_OF_THE_KERNEL = tuple(
+    f"/proc/{name}"
+    for name in (
+        "kcore", "kmsg", "kallsyms", "keys", "key-users", "vmallocinfo", "slabinfo", "timer_list", "sched_debug", "latency_stats",
+        "iomem", "ioports", "kpagecount", "kpageflags", "kpagecgroup", "sysrq-trigger", "config.gz", "modules",
+    )
+)  # fmt: skip
+"""What no agent needs to know of the kernel; root of a container owns some of it."""
 _FIRST_USER, _USERS = 1 << 30, 1 << 29
 _PATIENCE = 60.0  # [s] for the check
 
@@ -122,6 +130,8 @@ def _file_system(scratch: int, folders: Sequence[str]) -> list[str]:
     for place in _SETTINGS:
         arguments += ["--ro-bind-try", place, place]
     arguments += ["--proc", "/proc", "--dev", "/dev"]
+    for place in filter(os.path.isfile, _OF_THE_KERNEL):
+        arguments += ["--ro-bind", os.devnull, place]
     for place in (SCRATCH, "/dev/shm"):
         arguments += ["--perms", "1777", "--size", str(scratch), "--tmpfs", place]
     above = {

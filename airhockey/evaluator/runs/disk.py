@@ -60,6 +60,12 @@ def write_record(path: Path, content: msgspec.Struct) -> None:
     replace_file(path, msgspec.json.format(JSON.encode(content), indent=2) + b"\n")
 
 
+_MOST_PACKED = 1100
+"""How much smaller packing can make data."""
+_DEEPEST = 3
+"""Groups in groups: a group may hold itself."""
+
+
 def replace_file(path: Path, content: bytes) -> None:
     """Write a file so that it is the old one or the new one, never half of it."""
     part = path.with_name(path.name + ".part")
@@ -116,3 +122,33 @@ def disk_errors(path: Path) -> Iterator[None]:
     except OSError as error:
         why = error.strerror or " ".join(str(error).split())
         raise AirHockeyError(f"cannot write to {str(path)!r}: {why}; make room and go on with --resume") from error
+
+
+@contextlib.contextmanager
+def opened_hdf5(path: Path) -> Iterator[Any]:
+    """An HDF5 file to read from. It may be a stranger's: all that it shows is its own, and no larger than it can be.
+
+    Raises:
+        OSError: It is none, or it points to other files.
+    """
+    import h5py
+
+    with h5py.File(path) as file:
+        _check_own(file, _MOST_PACKED * path.stat().st_size)
+        yield file
+
+
+def _check_own(group: Any, most: int, depth: int = 0) -> None:
+    """Refuse links, data that lie in other files, and sizes that no packing explains; raises `OSError`."""
+    import h5py
+
+    for name in group:
+        if depth > _DEEPEST or not isinstance(group.get(name, getlink=True), h5py.HardLink):
+            raise OSError("an HDF5 file of a run holds no links")
+        item = group[name]
+        if isinstance(item, h5py.Group):
+            _check_own(item, most, depth + 1)
+        elif item.external or item.is_virtual:
+            raise OSError("an HDF5 file of a run holds its data itself")
+        elif item.nbytes > most:
+            raise OSError(f"it says that it holds {item.nbytes:,} bytes, more than can be packed into its size")

@@ -3,12 +3,11 @@
 from pathlib import Path
 from typing import Any
 
-import h5py
 import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.evaluator.runs.disk import new_hdf5
+from airhockey.evaluator.runs.disk import new_hdf5, opened_hdf5
 from airhockey.evaluator.runs.game_records import GameRecord
 
 Rows = NDArray[np.float32]
@@ -48,11 +47,11 @@ def write_film(path: Path, rows: Rows, record: bytes) -> None:
 
 def read_film(path: Path) -> Rows:
     """The base observations of a game. Shape (steps, 46)."""
-    with h5py.File(path) as file:
+    with opened_hdf5(path) as file:
         return np.asarray(file["base_observations"])
 
 
 def read_film_record(path: Path) -> GameRecord:
     """The game's record, as it was written into its film."""
-    with h5py.File(path) as file:
+    with opened_hdf5(path) as file:
         return msgspec.json.decode(file.attrs["record"].tobytes(), type=GameRecord)

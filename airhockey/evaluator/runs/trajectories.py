@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.errors import ConfigurationError
-from airhockey.evaluator.runs.disk import new_hdf5
+from airhockey.evaluator.runs.disk import new_hdf5, opened_hdf5
 from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Trajectory
 
 TRAJECTORIES = "trajectories.h5"  # the file of a finished run
@@ -62,7 +62,7 @@ def merge(sources: Iterable[Path], target: Path) -> None:
     sources = list(sources)
     with new_hdf5(target, sum(source.stat().st_size for source in sources)) as merged:
         for source in sources:
-            with h5py.File(source) as file:
+            with opened_hdf5(source) as file:
                 for env in file:
                     _append_group(merged.require_group(env), file[env])
         for group in merged.values():
@@ -77,14 +77,14 @@ def read_records(path: Path) -> list[EpisodeRecord]:
     Raises:
         OSError, KeyError: The file is broken.
     """
-    with h5py.File(path) as file:
+    with opened_hdf5(path) as file:
         lines = [line for group in file.values() for line in group["records"][()]]
     return [msgspec.json.decode(line, type=EpisodeRecord) for line in lines]
 
 
 def read_episodes(path: Path, env: str) -> Iterator[Episode]:
     """Every episode of an environment, one at a time, in the order of their indices."""
-    with h5py.File(path) as file:
+    with opened_hdf5(path) as file:
         group = file[env]
         for row, line in zip(group["episodes"][()], group["records"][()], strict=True):
             yield Episode(msgspec.json.decode(line, type=EpisodeRecord), _trajectory(group, row))
@@ -96,7 +96,7 @@ def read_episode(path: Path, env: str, index: int) -> Trajectory:
     Raises:
         ConfigurationError: The file has no such episode.
     """
-    with h5py.File(path) as file:
+    with opened_hdf5(path) as file:
         for row in file[env]["episodes"][()] if env in file else ():
             if row["index"] == index:
                 return _trajectory(file[env], row)
@@ -109,7 +109,7 @@ def read_steps(path: Path, env: str, name: str) -> NDArray[np.float64]:
     Returns:
         Shape (steps, …); empty where no step was played.
     """
-    with h5py.File(path) as file:
+    with opened_hdf5(path) as file:
         if name not in file[env]:
             return np.empty(0)
         table = file[env]["episodes"][()]

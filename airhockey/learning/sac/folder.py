@@ -12,7 +12,7 @@ The checkpoint is this program's own pickle: like any other, it must not be take
 import csv
 import os
 import pickle
-from typing import Any
+from typing import Any, ClassVar
 
 import msgspec
 import yaml
@@ -31,7 +31,8 @@ CHECKPOINT, NETWORK, CARD = "checkpoint.pkl", "network.npz", "card.yaml"
 class SkillFolder(RunFolder[Any, Any]):
     """The folder of a skill's training, opened for writing; its journal is the log."""
 
-    name, options_type = TRAINING, Settings
+    name = TRAINING
+    options_type: ClassVar[type] = Settings
     manifest_type = TrainingManifest
 
     @classmethod

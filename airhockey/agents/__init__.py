@@ -9,6 +9,8 @@ Nothing heavy is imported before an agent is built.
 
 from typing import TYPE_CHECKING, Any
 
+from airhockey.lazy import attribute
+
 if TYPE_CHECKING:
     from airhockey.agents.base import AgentBase
     from airhockey.agents.build import build_agent
@@ -26,8 +28,4 @@ _HOMES = {
 
 def __getattr__(name: str) -> Any:
     """Import what the layer offers when it is first asked for (PEP 562)."""
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    import importlib
-
-    return getattr(importlib.import_module(_HOMES[name]), name)
+    return attribute(__name__, name, _HOMES)

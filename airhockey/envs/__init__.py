@@ -9,10 +9,12 @@
 Heavy modules (MuJoCo, numba, MushroomRL) are imported when a name is first used.
 """
 
-import importlib
 import importlib.metadata
 import platform
 from typing import TYPE_CHECKING, Any
+
+from airhockey.envs.display import put_aside_what_does_not_work
+from airhockey.lazy import attribute
 
 if TYPE_CHECKING:
     from airhockey.envs.disturbances import Disturbances, load_disturbances
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
     from airhockey.envs.environment import Environment
     from airhockey.envs.mushroom import AirHockeyChallengeWrapper
     from airhockey.envs.vector.environment import VectorEnvironment
+
+put_aside_what_does_not_work()
 
 ENVIRONMENTS = ("3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare", "tournament")
 """The names that `make` accepts."""
@@ -92,6 +96,5 @@ def versions() -> dict[str, str]:
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(f"airhockey.envs.{_HOMES[name]}"), name)
+    """Import what the layer offers when it is first asked for (PEP 562)."""
+    return attribute(__name__, name, {one: f"{__name__}.{home}" for one, home in _HOMES.items()})

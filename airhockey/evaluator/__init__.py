@@ -4,8 +4,9 @@ from airhockey.evaluator import Options, begin, evaluate
 result = evaluate(begin(Options(environments=("7dof-prepare",), episodes=100), Path("runs/mine")))
 """
 
-import importlib
 from typing import TYPE_CHECKING, Any
+
+from airhockey.lazy import attribute
 
 if TYPE_CHECKING:
     from airhockey.evaluator.engines.engine import Engine, InProcess, engine_for
@@ -48,6 +49,4 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """Import what the layer offers when it is first asked for (PEP 562)."""
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(f"airhockey.evaluator.{_HOMES[name]}"), name)
+    return attribute(__name__, name, {one: f"{__name__}.{home}" for one, home in _HOMES.items()})

@@ -8,8 +8,9 @@ they take the page's colours (dark mode, print), scale to a phone, carry text al
 plotting library would weigh megabytes.
 """
 
-import importlib
 from typing import TYPE_CHECKING, Any
+
+from airhockey.lazy import attribute
 
 if TYPE_CHECKING:
     from airhockey.reporting.document import report
@@ -22,6 +23,4 @@ __all__ = ["report", "write_site"]
 
 def __getattr__(name: str) -> Any:
     """Import what the layer offers when it is first asked for (PEP 562)."""
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(importlib.import_module(f"airhockey.reporting.{_HOMES[name]}"), name)
+    return attribute(__name__, name, {one: f"{__name__}.{home}" for one, home in _HOMES.items()})

@@ -8,7 +8,8 @@ from pathlib import Path
 from airhockey import __version__
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.analysis.game import GameAnalysis, analyse_game
-from airhockey.evaluator.runs.reader import BROKEN, Match, Run, Source, Tournament, Unreadable, open_source, reason
+from airhockey.evaluator.runs.reader import Match, Run, Source, Tournament, Unreadable, open_source
+from airhockey.inputs.broken import BROKEN, reason
 from airhockey.reporting import words
 from airhockey.reporting.episodes import TaskData, read_task
 from airhockey.reporting.markup import Markup

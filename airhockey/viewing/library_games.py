@@ -9,7 +9,8 @@ import numpy as np
 
 from airhockey.evaluator.runs.game_records import GameRecord
 from airhockey.evaluator.runs.game_trajectories import read_film, read_film_record
-from airhockey.evaluator.runs.reader import BROKEN, Games, reading_errors
+from airhockey.evaluator.runs.reader import Games
+from airhockey.inputs.broken import BROKEN, reading_errors
 from airhockey.viewing.entries import Entry, Library
 from airhockey.viewing.games import game_recording
 from airhockey.viewing.recording import Recording

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from airhockey.envs.editions import DEFAULT, edition_of_names
 from airhockey.envs.specs import IIWA
 from airhockey.errors import ConfigurationError
+from airhockey.inputs.broken import check_size
 from airhockey.viewing.entries import Entry, Library
 from airhockey.viewing.episodes import Outcome, episode_recording
 from airhockey.viewing.games import game_recording
@@ -35,7 +36,9 @@ ADMITTED = frozenset(
 GAME = "tournament"
 ENVIRONMENT_OF_WIDTH = {12: "3dof-hit", 20: "7dof-defend", 23: "7dof-hit", 46: GAME}
 """An environment whose observations are this long, for datasets outside a folder named after theirs; the scene is the same."""
-_FIELDS = 6
+_FIELDS, _LONGEST = 6, 1024
+LARGEST_DATASET = 4 << 30
+"""In bytes; a thousand episodes of the tournament's length have a tenth of it."""
 
 
 class DatasetUnpickler(pickle.Unpickler):
@@ -45,7 +48,8 @@ class DatasetUnpickler(pickle.Unpickler):
         """Find what the pickle names, if it is admitted."""
         if (module, name) not in ADMITTED:
             raise pickle.UnpicklingError(f"it asks for {module}.{name}, which no dataset needs")
-        return super().find_class(module, name)
+        found = super().find_class(module, name)
+        return _only_of(found) if found in (bytes, bytearray) else found
 
 
 def read_dataset(path: Path) -> list[tuple[Any, ...]]:
@@ -55,16 +59,36 @@ def read_dataset(path: Path) -> list[tuple[Any, ...]]:
         ConfigurationError: It is no dataset, it is cut short, or it asks for more than arrays.
     """
     try:
+        check_size(path, LARGEST_DATASET)
         content: Any = DatasetUnpickler(io.BytesIO(path.read_bytes())).load()
+    except ConfigurationError:
+        raise
     except OSError as error:
         raise ConfigurationError(f"cannot read {str(path)!r}: {error.strerror}") from error
     except Exception as error:  # a pickle that is not one fails in any way it likes
         raise ConfigurationError(f"{str(path)!r} is not a dataset: {' '.join(str(error).split())}") from error
     rows: list[tuple[Any, ...]] = content if isinstance(content, list) else []
-    whole = all(isinstance(row, tuple) and len(row) == _FIELDS for row in rows)
-    if not whole or not rows:
+    if not rows or not all(map(_is_transition, rows)):
         raise ConfigurationError(f"{str(path)!r} is not a dataset: not a list of transitions of {_FIELDS} parts")
     return rows
+
+
+def _is_transition(row: Any) -> bool:
+    """States must be small arrays: lists in lists in lists would be walked through for ever."""
+    if not isinstance(row, tuple) or len(row) != _FIELDS:
+        return False
+    return all(isinstance(row[k], np.ndarray) and row[k].ndim == 1 and row[k].size <= _LONGEST for k in (0, 3))
+
+
+def _only_of(kind: Callable[..., Any]) -> Callable[..., Any]:
+    """`bytes` and `bytearray` of what is there: a number would ask for so much memory."""
+
+    def made(content: Any = b"", *how: str) -> Any:
+        if not isinstance(content, (bytes, bytearray, str)):
+            raise pickle.UnpicklingError(f"it asks for {kind.__name__} of {type(content).__name__}")
+        return kind(content, *how)
+
+    return made
 
 
 def episodes_of(transitions: Sequence[tuple[Any, ...]]) -> list[Array]:

@@ -4,9 +4,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from airhockey.evaluator.analysis.failures import causes_of
-from airhockey.evaluator.runs.reader import Run, reading_errors
+from airhockey.evaluator.runs.reader import Run
 from airhockey.evaluator.runs.records import EpisodeRecord
 from airhockey.evaluator.runs.trajectories import read_episode
+from airhockey.inputs.broken import reading_errors
 from airhockey.viewing.entries import Entry, Library
 from airhockey.viewing.episodes import Outcome, episode_recording
 from airhockey.viewing.recording import Recording

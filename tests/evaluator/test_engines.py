@@ -1,3 +1,5 @@
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -91,3 +93,22 @@ class _NoUnpickling:
         if self.failures < 0:
             return self._context.Process(target=target, args=args, daemon=daemon)
         return self._context.Process(target=exit, args=(5,), daemon=daemon)
+
+
+SCRIPT = """
+from pathlib import Path
+from airhockey.evaluator import Options, Processes, begin, evaluate
+options = Options(environments=("3dof-defend",), agent="hold", episodes=2)
+{guard}print(evaluate(begin(options, Path("run")), Processes(2)).episodes)
+"""
+
+
+@pytest.mark.parametrize(("guard", "status"), [("", 1), ('if __name__ == "__main__": ', 0)])
+def test_a_script_is_told_of_the_guard_that_it_lacks(tmp_path: Path, guard: str, status: int) -> None:
+    (tmp_path / "mine.py").write_text(SCRIPT.format(guard=guard))
+    done = subprocess.run([sys.executable, "mine.py"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == status, done.stderr
+    if status:
+        assert "mine.py' starts worker processes" in done.stderr and 'if __name__ == "__main__":' in done.stderr
+    else:
+        assert done.stdout == "2\n"

@@ -159,3 +159,44 @@ def test_an_episode_that_is_not_there_is_told_what_is(hockey: Hockey, run_folder
     status, _, err = hockey(f"replay {run_folder} --episode 9 --no-browser")
     assert status == 2
     assert "there are 0, 1, 2" in err
+
+
+def nested(depth: int) -> list[object]:
+    """Lists that hold the same list twice, in which whoever walks through them walks for ever."""
+    inner: list[object] = [0.0]
+    for _ in range(depth):
+        inner = [inner, inner]
+    return inner
+
+
+class Asks:
+    """Pickles as a call of something with a number."""
+
+    def __init__(self, function: object, *arguments: object) -> None:
+        self.call = function, arguments
+
+    def __reduce__(self) -> object:
+        return self.call
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        Asks(bytearray, 10**12),
+        Asks(bytes, 10**12),
+        [(nested(60), 0, 0.0, nested(60), False, True)],
+        [(np.zeros(2000), 0, 0.0, np.zeros(2000), False, True)],
+        [(np.zeros((3, 3)), 0, 0.0, np.zeros((3, 3)), False, True)],
+    ],
+)
+def test_a_dataset_that_asks_for_too_much_is_refused_at_once(tmp_path: Path, content: object) -> None:
+    (tmp_path / "dataset.pkl").write_bytes(pickle.dumps(content))
+    with pytest.raises(ConfigurationError, match=r"is not a dataset"):
+        open_library(tmp_path / "dataset.pkl")
+
+
+def test_a_dataset_that_is_too_large_is_not_read(tmp_path: Path) -> None:
+    with (tmp_path / "dataset.pkl").open("wb") as file:
+        file.truncate(5 << 30)  # nothing is written
+    with pytest.raises(ConfigurationError, match="are allowed"):
+        open_library(tmp_path / "dataset.pkl")

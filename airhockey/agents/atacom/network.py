@@ -1,7 +1,6 @@
 """A policy's network played with NumPy: two hidden layers of rectified units, and tanh of the mean. No torch needed."""
 
 import io
-import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -9,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.errors import ConfigurationError
+from airhockey.inputs.broken import BROKEN
 
 Weights = NDArray[np.float32]
 
@@ -58,7 +58,9 @@ class Network:
                 raise ConfigurationError(f"{str(path)!r} has more than {LARGEST_FILE} bytes: not a skill's network")
             with np.load(path, allow_pickle=False) as file:
                 return cls({name: file[name] for name in file.files})
-        except (OSError, ValueError, AttributeError, zipfile.BadZipFile) as error:
+        except ConfigurationError:
+            raise
+        except BROKEN as error:
             raise ConfigurationError(f"cannot read the network {str(path)!r}: {error}") from error
 
     def as_bytes(self) -> bytes:

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from typing import Any
 
+from airhockey.envs.display import asked_for
 from airhockey.errors import MissingDependencyError, unknown
 
 BACKENDS = ("egl", "osmesa")
@@ -38,7 +39,7 @@ def choose_backend() -> str:
     Raises:
         MissingDependencyError: None works; the message names the packages that are needed.
     """
-    chosen = os.environ.get("MUJOCO_GL", "")
+    chosen = asked_for()
     if chosen:
         return chosen
     complaints = []

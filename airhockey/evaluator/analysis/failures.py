@@ -5,9 +5,10 @@ from collections import Counter
 import msgspec
 
 from airhockey.envs.specs import CONTROL_PERIOD
-from airhockey.evaluator.runs.reader import BROKEN, Run
+from airhockey.evaluator.runs.reader import Run
 from airhockey.evaluator.runs.records import EpisodeRecord
 from airhockey.evaluator.runs.trajectories import read_episode
+from airhockey.inputs.broken import BROKEN
 
 TIME_IS_UP = "not achieved: the time was up"
 ENDED = "not achieved: the task ended"

@@ -24,7 +24,14 @@ from airhockey.errors import AirHockeyError, ConfigurationError, MissingDependen
 from airhockey.evaluator.engines.engine import Engine, engine_for
 from airhockey.evaluator.engines.pool import JobFailed
 from airhockey.evaluator.engines.processes import Processes
-from airhockey.evaluator.engines.workers import ONE_THREAD, SAFE_PATH, children_environment, close, no_interrupts
+from airhockey.evaluator.engines.workers import (
+    ONE_THREAD,
+    SAFE_PATH,
+    check_script,
+    children_environment,
+    close,
+    no_interrupts,
+)
 
 Job = TypeVar("Job")
 Result = TypeVar("Result")
@@ -190,6 +197,7 @@ def _local(workers: int, attempts: int) -> Iterator[Any]:
     """Workers on this machine, that leave Ctrl-C to their parent; only the job that a dead one was at is blamed."""
     import dask
 
+    check_script()
     settings = {"distributed.scheduler.worker-saturation": 1.0, "distributed.scheduler.allowed-failures": attempts - 1}
     scratch = tempfile.TemporaryDirectory(prefix="airhockey-cluster-", ignore_cleanup_errors=True)
     with scratch as folder, dask.config.set(settings | {"temporary-directory": folder}), children_environment():

@@ -3,12 +3,16 @@
 import contextlib
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from multiprocessing import connection, get_context, parent_process
 from multiprocessing.process import BaseProcess
+from pathlib import Path
 from typing import Any
+
+from airhockey.errors import ConfigurationError
 
 # Two workers must not fight over the cores, and a sum must not depend on how many threads shared it.
 ONE_THREAD = {
@@ -51,6 +55,7 @@ class Worker:
     @classmethod
     def start(cls, function: Callable[[Any], Any]) -> "Worker":
         """Start a process that will call `function`."""
+        check_script()
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         process = context.Process(target=_work, args=(theirs, function), daemon=True)
@@ -96,6 +101,27 @@ class Worker:
         if self.process.is_alive():
             self.process.kill()
             self.process.join()
+
+
+def check_script() -> None:
+    """A script that starts workers is imported by each of them, and must not do its work again then.
+
+    Raises:
+        ConfigurationError: It would.
+    """
+    main = sys.modules.get("__main__")
+    file = getattr(main, "__file__", None)
+    if file is None or getattr(main, "__spec__", None) is not None:
+        return
+    try:
+        guarded = "__main__" in Path(file).read_text(errors="replace")
+    except OSError:
+        return
+    if not guarded:
+        raise ConfigurationError(
+            f"{file!r} starts worker processes, and each of them imports it: put what it does under "
+            'if __name__ == "__main__":, or play in one process (InProcess(), jobs=1)'
+        )
 
 
 def close(function: Any) -> None:

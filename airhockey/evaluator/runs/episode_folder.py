@@ -15,14 +15,13 @@ import time
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from airhockey.evaluator.checks import check_options
 from airhockey.evaluator.runs import journal, trajectories
 from airhockey.evaluator.runs.disk import disk_errors
 from airhockey.evaluator.runs.folder import RunFolder
 from airhockey.evaluator.runs.manifest import RUN
 from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Options
+from airhockey.inputs.broken import BROKEN, reading_errors
 
 SEGMENTS = "trajectories"
 SEGMENT_SECONDS = 1.0  # how much work a kill may cost
@@ -91,7 +90,8 @@ class EpisodeFolder(RunFolder[Options, EpisodeRecord]):
     def recover(self) -> list[EpisodeRecord]:
         """The records of what is finished; the journal is made to say the same."""
         if self.trajectories.exists():
-            records = trajectories.read_records(self.trajectories)
+            with reading_errors(self.trajectories):
+                records = trajectories.read_records(self.trajectories)
         else:
             records = [record for segment in self._named_segments() for record in self._recover_segment(segment)]
         if records or (self.path / journal.NAME).exists():
@@ -103,7 +103,7 @@ class EpisodeFolder(RunFolder[Options, EpisodeRecord]):
         self._next_segment = int(segment.stem) + 1
         try:
             return trajectories.read_records(segment)
-        except (OSError, KeyError, msgspec.MsgspecError):
+        except BROKEN:
             segment.rename(segment.with_suffix(".broken"))
             return []
 

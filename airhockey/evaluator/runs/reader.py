@@ -3,15 +3,12 @@
 A folder may belong to a run that is still being played, that was killed, that lost a file, or to somebody else altogether.
 """
 
-import contextlib
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 import h5py
-import msgspec
 
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.match import MatchOptions
@@ -23,20 +20,10 @@ from airhockey.evaluator.runs.manifest import MATCH, RUN, TOURNAMENT, Manifest, 
 from airhockey.evaluator.runs.records import EpisodeRecord, Job, Options
 from airhockey.evaluator.runs.trajectories import TRAJECTORIES
 from airhockey.evaluator.schedule import TournamentOptions
+from airhockey.inputs.broken import BROKEN, reason
 
 MANIFESTS = (RUN, MATCH, TOURNAMENT)
 AnyOptions = TypeVar("AnyOptions")
-BROKEN = (
-    OSError,
-    LookupError,
-    ValueError,
-    TypeError,
-    AttributeError,
-    RuntimeError,
-    MemoryError,
-    msgspec.MsgspecError,
-)
-"""What reading a file raises whose bytes are not what they were, or that is somebody else's."""
 
 
 @dataclass
@@ -172,15 +159,6 @@ def look_into(path: Path) -> Run | Games[Any] | None:
     return _open_games(unknown) if unknown.films else None
 
 
-@contextlib.contextmanager
-def reading_errors(path: Path) -> Iterator[None]:
-    """What reading a broken file raises, as an error of ours that names it."""
-    try:
-        yield
-    except BROKEN as error:
-        raise ConfigurationError(f"cannot read {str(path)!r}: {reason(error, path.parent)}") from error
-
-
 def short_name(agent: str) -> str:
     """An agent's name without the path of its folder, which is nobody else's business."""
     if "://" in agent or "/" not in agent:
@@ -277,9 +255,3 @@ def _natural(path: Path) -> list[str | int]:
 
 def _count(number: int, what: str) -> str:
     return f"{number} {what}{'s' if number != 1 else ''}"
-
-
-def reason(error: BaseException, folder: Path) -> str:
-    """What went wrong in a folder, in a line, without the folder's path, which stands beside it."""
-    said = getattr(error, "strerror", None) or str(error) or type(error).__name__
-    return " ".join(said.replace(f"{folder}/", "").split())[:200]

@@ -22,9 +22,12 @@ from airhockey.agents.atacom.network import Network
 from airhockey.evaluator.runs.disk import disk_errors, replace_file
 from airhockey.evaluator.runs.folder import RunFolder
 from airhockey.evaluator.runs.manifest import TRAINING, TrainingManifest
+from airhockey.inputs.broken import check_size, reading_errors
 from airhockey.learning.sac.plots import LOG
 from airhockey.learning.sac.records import Settings
 
+LARGEST_CHECKPOINT = 16 << 30
+"""In bytes."""
 CHECKPOINT, NETWORK, CARD = "checkpoint.pkl", "network.npz", "card.yaml"
 
 
@@ -69,7 +72,11 @@ class SkillFolder(RunFolder[Any, Any]):
     def load(self) -> dict[str, Any] | None:
         """The last checkpoint, or None before the first; what the log says of later episodes is cut off."""
         log, path = self.path / LOG, self.path / CHECKPOINT
-        state: dict[str, Any] | None = pickle.loads(path.read_bytes()) if path.exists() else None
+        state: dict[str, Any] | None = None
+        if path.exists():
+            with reading_errors(path):
+                check_size(path, LARGEST_CHECKPOINT)
+                state = pickle.loads(path.read_bytes())
         if log.exists():
             os.truncate(log, min(log.stat().st_size, 0 if state is None else state["log"]))
         return state

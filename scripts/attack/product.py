@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-PATIENCE = 240.0
+PATIENCE = 600.0
 """Longest time for a command, in [s]; beyond that it hangs."""
 WANTED = ""
 """Only attacks whose names hold this are wanted."""

@@ -56,7 +56,7 @@ def make_importable(checkout: Checkout) -> None:
     while _current:
         _forget(_current.pop())
     _current.append(checkout)
-    sys.path[:0] = dict.fromkeys((str(checkout.root), str(checkout.package)))
+    sys.path[:0] = map(str, checkout.import_path)
     sys.path.append(_known_to_children(checkout.package))
     importlib.invalidate_caches()
     init = checkout.package / "__init__.py"
@@ -76,13 +76,18 @@ def make_importable(checkout: Checkout) -> None:
 def at_the_root(checkout: Checkout) -> Iterator[None]:
     """The root is the working directory, and the first place where children of this process look for modules."""
     before, path = os.getcwd(), os.environ.get("PYTHONPATH")
-    os.environ["PYTHONPATH"] = os.pathsep.join([str(checkout.root), *([path] if path else [])])
+    os.environ["PYTHONPATH"] = os.pathsep.join([*_for_children(checkout), *([path] if path else [])])
     os.chdir(checkout.root)
     try:
         yield
     finally:
         os.chdir(before)
         os.environ.pop("PYTHONPATH") if path is None else os.environ.update(PYTHONPATH=path)
+
+
+def _for_children(checkout: Checkout) -> list[str]:
+    """What children look through first; the package's own folder is none of it, as they know the package by its name."""
+    return [str(folder) for folder in checkout.import_path if folder in (checkout.root, checkout.root / "src")]
 
 
 @contextlib.contextmanager
@@ -114,7 +119,7 @@ def _known_to_children(package: Path) -> str:
 
 def _forget(checkout: Checkout) -> None:
     """Modules of this submission are no longer found."""
-    folders = {str(checkout.root), str(checkout.package), _known_to_children(checkout.package)}
+    folders = {*map(str, checkout.import_path), _known_to_children(checkout.package)}
     sys.path[:] = [entry for entry in sys.path if entry not in folders]
     for name, module in list(sys.modules.items()):
         file = getattr(module, "__file__", None)

@@ -2,6 +2,7 @@
 #   make evaluate     the main job on the default agent (core dependencies only)
 #   make test         lint, types, layers, documentation and tests
 #   make compatibility   entries of others here, ours beside the official package (fetches packages)
+#   make figures      the figures of README and documentation, measured anew (hours)
 #   make docs         the documentation, in build/site
 
 PYTHON ?= python3
@@ -9,7 +10,7 @@ BIN := .venv/bin
 TASK ?= prepare
 EPISODES ?= 1000
 
-.PHONY: compatibility evaluate test lint types layers docs players pytest clean
+.PHONY: compatibility figures evaluate test lint types layers docs players pytest clean
 
 evaluate: .venv/core.installed
 	$(BIN)/hockey evaluate --task $(TASK) --episodes $(EPISODES)
@@ -28,6 +29,7 @@ layers: .venv/dev.installed
 
 docs: .venv/dev.installed
 	$(BIN)/python scripts/command_reference.py docs/commands.md
+	$(BIN)/python scripts/rules_pages.py docs/rules
 	$(BIN)/zensical build --strict --clean
 
 players: .venv/dev.installed
@@ -35,6 +37,9 @@ players: .venv/dev.installed
 
 pytest: .venv/dev.installed players
 	$(BIN)/pytest --numprocesses auto
+
+figures: .venv/dev.installed
+	$(BIN)/python scripts/figures.py measure
 
 compatibility: .venv/dev.installed
 	CLEAN_INSTALL=1 $(BIN)/pytest tests/submissions tests/envs/test_official_info.py tests/test_clean_install.py

@@ -5,6 +5,7 @@
 Every block times about `steps` control steps of the batch with 1 and with 2 threads, and the same number of
 `mj_step(model, data, 20)` on copies of the same states with the same motor torques, in 1 and in 2 threads. A figure is that of
 the median block, and a ratio the median of the blocks' ratios, so that another process on the machine disturbs all alike.
+Names that end in a kind of actions are a learner's: ATACOM, the puck's filter, features and reward are part of every step.
 `x2` is what the second thread brings; `CPU` is the ratio of the processor time of a step, which says what the batch adds to
 `mj_step` whoever else is running. `--processes` adds Gymnasium's `AsyncVectorEnv` with two processes.
 """
@@ -21,14 +22,27 @@ import mujoco
 import numpy as np
 
 from airhockey import envs
+from airhockey.agents.learned.actions import ACTIONS
+from airhockey.learning.envs.batch import LearningBatch
 
-NAMES = ("7dof-hit", "7dof-defend", "tournament")
+NAMES = ("7dof-hit", "7dof-defend", "tournament", "7dof-hit-tip", "7dof-defend-tip")
 SIZES = (1, 8, 64)
 THREADS = (1, 2)
 
 
+def make(name: str, size: int, threads: int, disturbances: str) -> envs.VectorEnvironment:
+    """A batch; of a learner's environment, with ATACOM, features and reward in every control step, where the name says so."""
+    task, _, kind = name.rpartition("-")
+    if kind in ACTIONS:
+        return LearningBatch(task, size, kind, repeat=1, disturbances=disturbances, threads=threads, seed=0)
+    return envs.make_vec(name, size, threads, 0, disturbances=disturbances)
+
+
 def actions(vec: envs.VectorEnvironment, step: int) -> Any:
-    """Smooth joint motion around the start for all, in the format of interpolation order 3."""
+    """Smooth joint motion around the start for all, in the format of interpolation order 3; or a smooth action."""
+    if isinstance(vec, LearningBatch):
+        action = 0.5 * np.sin(0.1 * step + np.arange(vec.action_shape[0]))
+        return np.broadcast_to(action, (vec.num_envs, *vec.action_shape))
     start = np.array(vec.single.simulation.robot.start)
     t, phases = 0.02 * (step + 1), np.arange(start.size)
     swing = 0.05 * (np.sin(2.0 * t + phases) - np.sin(phases))
@@ -45,7 +59,7 @@ class Bare:
 
     def copy(self, vec: envs.VectorEnvironment) -> None:
         """Take the present states over."""
-        for data, (moment, _) in zip(self.data, vec.get_state(), strict=True):
+        for data, (moment, _) in zip(self.data, envs.VectorEnvironment.get_state(vec), strict=True):
             vec.single.set_state(moment)
             mujoco.mj_copyData(data, self.model, vec.single.simulation.data)
 
@@ -74,7 +88,7 @@ def play(vec: envs.VectorEnvironment, moves: list[Any], batch: Any) -> None:
 
 def measure(name: str, size: int, blocks: int, steps: int, disturbances: str) -> dict[tuple[str, int], list[Any]]:
     """Wall and processor time of a control step in every block, by ("batch" or "bare", threads)."""
-    vecs = {threads: envs.make_vec(name, size, threads, seed=0, disturbances=disturbances) for threads in THREADS}
+    vecs = {threads: make(name, size, threads, disturbances) for threads in THREADS}
     bare, rounds = Bare(vecs[1]), max(1, steps // size)
     moves = [actions(vecs[1], k) for k in range(rounds)]
     batch = vecs[1].new_batch()
@@ -97,7 +111,7 @@ def measure(name: str, size: int, blocks: int, steps: int, disturbances: str) ->
 
 def median_ratio(above: list[Any], below: list[Any], which: int) -> float:
     """Median over the blocks of the ratio of two times (0: wall, 1: processor)."""
-    return statistics.median(a[which] / b[which] for a, b in zip(above, below, strict=True))
+    return float(statistics.median(a[which] / b[which] for a, b in zip(above, below, strict=True)))
 
 
 def processes_rate(name: str, size: int, steps: int) -> float:
@@ -148,7 +162,7 @@ def main() -> None:
                 row
                 + f"{median_ratio(t['batch', 1], t['batch', 2], 0):6.3f} {median_ratio(t['bare', 1], t['bare', 2], 0):8.3f}"
             )
-        if options.processes and name != "tournament":
+        if options.processes and name in ("7dof-hit", "7dof-defend"):
             print(
                 f"{name:12s} {2:4d} {processes_rate(name, 2, options.steps * 10):9.0f}  AsyncVectorEnv, two processes"
             )

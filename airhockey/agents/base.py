@@ -13,6 +13,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.copying import Copyable
+
 Array = NDArray[np.float64]
 
 
@@ -24,8 +26,10 @@ def task_of(env_info: Mapping[str, Any]) -> str:
     return str(env_info["env_name"]).rpartition("-")[2].partition("_")[0]
 
 
-class AgentBase(abc.ABC):
+class AgentBase(Copyable, abc.ABC):
     """A player that is given `env_info` once and an observation at every control step.
+
+    A copy (`agent.copy()`, `copy`, `pickle`) plays on from here by itself, and the original is left as it is.
 
     Attributes:
         interpolation_order: The trajectory interpolation that this agent's actions are meant for (challenge's section
@@ -73,7 +77,7 @@ class AgentBase(abc.ABC):
         """Called by the evaluator when a serve begins."""
         self.reset()
 
-    def stop(self) -> None:  # noqa: B027 - most agents have nothing to stop
+    def stop(self) -> None:
         """Called by the evaluator when an evaluation ends."""
 
     @property

@@ -7,7 +7,7 @@ import rich_click as click
 
 from airhockey.commands import HELP_PAGE
 
-_COMMANDS = {"pgpe": "train_pgpe", "sac": "train_sac"}
+_COMMANDS = {"pgpe": "train_pgpe", "ppo": "train_ppo", "sac": "train_sac"}
 """A command's name and the module of this package that holds it, as a function of the command's name."""
 
 
@@ -28,11 +28,13 @@ class _TrainingMethods(click.RichGroup):
 @click.group(cls=_TrainingMethods)
 @click.rich_config(help_config=HELP_PAGE)
 def train() -> None:
-    """Train a player: the numbers of the rule-based one by PGPE or CMA-ES, skills by SAC under constraints.
+    """Train a player: the numbers of the rule-based one by PGPE or CMA-ES, skills by SAC and
+    whole tasks by PPO under constraints.
 
     For example:
 
     \b
     hockey train pgpe --task hit --robot 3dof    parameters of the rule-based hit
     hockey train sac --task defend               a network for the defence
+    hockey train ppo --task 7dof-defend          a network for a whole task
     """

@@ -53,6 +53,13 @@ _HEAD = "iteration      return   success   penalty    lambda   sigma/start   sec
 @click.option("--episodes", type=click.IntRange(min=1), default=5, show_default=True, help="Played with each, M.")
 @click.option("--learning-rate", type=float, default=1.0, show_default=True, help="Of μ, α.")
 @click.option("--sigma-share", type=float, default=0.5, show_default=True, help="Learning rate of log σ, in α.")
+@click.option(
+    "--sigma-rule",
+    type=click.Choice(["log", "thesis"]),
+    default="log",
+    show_default=True,
+    help="What is updated: log σ, or σ itself as the thesis has it.",
+)
 @click.option("--sigma", type=float, default=1.0, show_default=True, help="Factor on the σ to start with.")
 @click.option(
     "--schedule",
@@ -115,12 +122,19 @@ def pgpe(ctx: click.RichContext, /, **given: Any) -> None:
     settings, done = folder.manifest.options, len(folder.records)
     each = settings.candidates * settings.episodes
 
+    warned: set[str] = set()
+
+    def tell_of(tell: _progress.Tell, one: "Iteration") -> None:
+        tell(_line(settings, one))
+        for warning in _bound_warnings(settings, one, warned):
+            tell(warning)
+
     def play(tell: _progress.Tell) -> None:
         for one in folder.records:
-            tell(_line(settings, one))
+            tell_of(tell, one)
         played = itertools.count(done * each + 1)
         engine = engine_for(given["jobs"] or cpus())
-        train(folder, engine, lambda _: tell(completed=next(played)), lambda one: tell(_line(settings, one)))
+        train(folder, engine, lambda _: tell(completed=next(played)), lambda one: tell_of(tell, one))
 
     head = f"θ: {', '.join(settings.names)}\n{_HEAD}"
     progress = _progress.of_training(head, "episodes", settings.iterations * each, done * each, given["quiet"])
@@ -185,9 +199,27 @@ def _line(settings: "Settings", one: "Iteration") -> str:
     )
 
 
+def _bound_warnings(settings: "Settings", one: "Iteration", warned: set[str]) -> list[str]:
+    """A line for each parameter that has come to sit on a bound, once; it is then among the warned."""
+    import numpy as np
+
+    from airhockey.learning.pgpe.trainable import bounds, on_bounds
+
+    new = [name for name in on_bounds(settings.names, np.array(one.mean)) if name not in warned]
+    warned.update(new)
+    lines = []
+    for name in new:
+        (low,), (high,) = bounds([name])
+        lines.append(f"warning: μ of {name} sits on a bound ({low:g} … {high:g}): the best value may lie beyond")
+    return lines
+
+
 def _print_parameters(folder: "TrainingFolder", good: str) -> None:
     """What the run ended with."""
+    import numpy as np
+
     from airhockey.learning.pgpe.folder import PARAMETERS
+    from airhockey.learning.pgpe.trainable import on_bounds
 
     if not folder.records:
         click.echo("no iteration was finished: there are no parameters", err=True)
@@ -199,6 +231,8 @@ def _print_parameters(folder: "TrainingFolder", good: str) -> None:
         f"penalty {last.mean_penalty:.3g} points per episode"
     )
     width = max(map(len, settings.names))
+    stopped = on_bounds(settings.names, np.array(last.mean))
     for name, before, mean, sigma in zip(settings.names, settings.mean, last.mean, last.sigma, strict=True):
-        click.echo(f"  {name:{width}}  {before:10.4g} -> {mean:10.4g}   sigma {sigma:.3g}")
+        limit = "   on its bound" if name in stopped else ""
+        click.echo(f"  {name:{width}}  {before:10.4g} -> {mean:10.4g}   sigma {sigma:.3g}{limit}")
     click.echo(f"{good}parameters: {folder.path / PARAMETERS}")

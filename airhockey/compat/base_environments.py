@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from airhockey import envs
 from airhockey.compat.air_hockey_challenge.utils.universal_joint_plugin import UniversalJointPlugin
 from airhockey.compat.rl_info import mdp_info
+from airhockey.envs.copying import Copyable
 from airhockey.envs.specs import JOINT_VELOCITY_FILTER, TABLE
 
 Array = NDArray[np.float64]
@@ -22,8 +23,8 @@ MAX_SPEED = 100.0
 """Of the puck, beyond which the simulation is not to be believed, in [m/s] and [rad/s] together."""
 
 
-class BaseEnvironment(Environment):
-    """A scene of one or two robots, moved by torques.
+class BaseEnvironment(Copyable, Environment):
+    """A scene of one or two robots, moved by torques. Its copies have a simulation of their own, and the same future.
 
     A subclass may give `setup(obs)`, `reward(state, action, next_state, absorbing)`, `is_absorbing(obs)` and
     `_modify_observation(obs)`.
@@ -63,11 +64,10 @@ class BaseEnvironment(Environment):
         info.gamma, info.horizon = gamma, horizon
         self.env_info["rl_info"] = mdp_info(info)
         super().__init__(self.env_info["rl_info"])
-        self._model, self._data = self._env.simulation.model, self._env.simulation.data
+        self._bind()
         self._model.opt.timestep = timestep
         self._substeps = n_intermediate_steps * n_substeps
         self.n_agents = self._env.n_agents
-        self.robot_model, self.robot_data = self.env_info["robot"]["robot_model"], self.env_info["robot"]["robot_data"]
         self.init_state = np.array(self._env.simulation.robot.start)
         self.universal_joint_plugin = (
             UniversalJointPlugin(self._model, self._data, self.env_info) if self._is_iiwa else None
@@ -77,6 +77,27 @@ class BaseEnvironment(Environment):
         self._torque_limit = self.env_info["rl_info"].action_space.high
         self._velocity = np.zeros((self.n_agents, self._n))
         self._obs = np.zeros(0)
+
+    def _bind(self) -> None:
+        """Show what is the environment's."""
+        self.env_info = self._env.env_info
+        self._model, self._data = self._env.simulation.model, self._env.simulation.data
+        self.robot_model, self.robot_data = self.env_info["robot"]["robot_model"], self.env_info["robot"]["robot_data"]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but what is the environment's, which the copy binds anew."""
+        shared = ("env_info", "_mdp_info", "_model", "_data", "robot_model", "robot_data")
+        plugin = self.universal_joint_plugin
+        return {name: value for name, value in self.__dict__.items() if name not in shared} | {
+            "universal_joint_plugin": None if plugin is None else plugin.bound_to(None, None, None)
+        }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._bind()
+        self._mdp_info = self.env_info["rl_info"]
+        if self.universal_joint_plugin is not None:
+            self.universal_joint_plugin = self.universal_joint_plugin.bound_to(self._model, self._data, self.env_info)
 
     def seed(self, seed: int) -> None:
         """Seed NumPy's global generator, from which starts are drawn."""

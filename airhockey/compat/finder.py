@@ -8,9 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 
-from airhockey.compat.own_copy import OwnCopy
+from airhockey.compat.own_copy import NAME, OwnCopy
 
-NAME = "air_hockey_challenge"
 _ROOT = Path(__file__).parent
 
 
@@ -31,13 +30,20 @@ class Finder(importlib.abc.MetaPathFinder):
         if parts[0] != NAME or (self.own is not None and self.own.wins):
             return None
         place = _ROOT.joinpath(*parts)
+        module = "/".join(parts[1:])
+        replaced = self.own.modules if self.own is not None else ()
+        if self.own is not None and f"{module}.py" in replaced:
+            return importlib.util.spec_from_file_location(fullname, self.own.folder / f"{module}.py")
         if (place / "__init__.py").is_file():
             places = [place] if self.own is None else [place, self.own.folder.joinpath(*parts[1:])]
+            init = places[-1 if f"{module}/__init__.py" in replaced else 0] / "__init__.py"
+            if self.own is not None and not module:
+                init = self.own.init or init
             return importlib.util.spec_from_file_location(
-                fullname, place / "__init__.py", submodule_search_locations=[str(folder) for folder in places]
+                fullname, init, submodule_search_locations=[str(folder) for folder in places]
             )
-        module = place.with_suffix(".py")
-        return importlib.util.spec_from_file_location(fullname, module) if module.is_file() else None
+        file = place.with_suffix(".py")
+        return importlib.util.spec_from_file_location(fullname, file) if file.is_file() else None
 
 
 def install(own: OwnCopy | None = None) -> None:

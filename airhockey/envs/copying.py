@@ -1,7 +1,7 @@
 """Copies of what holds addresses and views: Python's default would let the copy move the original."""
 
 import copy
-from typing import TypeVar
+from typing import Any, NoReturn, TypeVar
 
 Object = TypeVar("Object", bound="Copyable")
 
@@ -18,3 +18,14 @@ class Copyable:
 
     def __copy__(self: Object) -> Object:
         return copy.deepcopy(self)
+
+
+class NotCopyable:
+    """An object that holds something of the operating system's, of which there can be no second one: copying is refused."""
+
+    def __reduce_ex__(self, protocol: Any) -> NoReturn:
+        """Asked by `copy` and `pickle` alike."""
+        raise TypeError(
+            f"a {type(self).__name__} cannot be copied or pickled: it holds an open process, connection, lock or file; "
+            "make another one"
+        )

@@ -17,6 +17,7 @@ from airhockey.envs.kernel.memory import bytes_from, pack, view
 from airhockey.envs.kernel.opponent import ORDER as OPPONENT_ORDER
 from airhockey.envs.perception import Perception
 from airhockey.envs.plant_mismatch import PlantMismatch
+from airhockey.envs.random_stream import Stream
 from airhockey.envs.simulation import Simulation, SimulationState
 from airhockey.envs.specs import CONTROL_PERIOD, SUBSTEPS, TABLE
 from airhockey.envs.tasks import task, verdicts
@@ -43,12 +44,12 @@ class Episode(NamedTuple):
 
 
 class State(NamedTuple):
-    """A moment of an environment, which `Environment.set_state` goes back to: plain numbers and arrays, to be kept or pickled.
+    """A moment of an environment, which `Environment.set_state` goes back to: numbers, bytes and arrays, to be kept or pickled.
 
     Attributes:
         made_for: Name, interpolation orders, edition and disturbances of the environment.
         simulation: Physics, controllers, filters, the opponent, the latest readings.
-        game: Score, faults, sides, timer. Shape (1,).
+        game: Score, faults, sides, timer.
         progress: Steps, verdict, success.
         episode: What the latest reset decided.
         streams: States of the random stream of the plant and of each player's perception, where they go on at every step.
@@ -56,7 +57,7 @@ class State(NamedTuple):
 
     made_for: tuple[Any, ...]
     simulation: SimulationState
-    game: NDArray[Any]
+    game: bytes
     progress: tuple[int, int, bool]
     episode: Episode
     streams: Any
@@ -158,7 +159,6 @@ class Environment(Copyable):
         self._draws_at_steps = self._blurred or self.disturbances.torque > 0.0
         self._made_for = (name, tuple(orders), edition_name, self.disturbances)
         self._start_random = np.random.RandomState(0)
-        self.plant_random = np.random.default_rng(0)
         self._perception_randoms: list[np.random.Generator] = []
         self._seed_streams(np.random.SeedSequence())
         self.reset()
@@ -256,7 +256,7 @@ class Environment(Copyable):
         return State(
             self._made_for,
             self.simulation.save(),
-            self._played.copy(),
+            self._played.tobytes(),
             (self.step_count, self.verdict, self.succeeded),
             episode,
             self._save_streams() if self._draws_at_steps else None,
@@ -284,11 +284,13 @@ class Environment(Copyable):
     state = property(get_state, set_state, doc="The present moment; see `get_state` and `set_state`.")
 
     def _save_streams(self) -> tuple[Any, ...]:
-        return (self.plant_random.bit_generator.state, *(perception.save() for perception in self.perceptions))
+        plant, seen = self._plant_stream.save(), [perception.save() for perception in self.perceptions]
+        return plant, seen
 
     def _restore_streams(self, streams: tuple[Any, ...]) -> None:
-        self.plant_random.bit_generator.state = streams[0]
-        for perception, saved in zip(self.perceptions, streams[1:], strict=True):
+        plant, seen = streams
+        self._plant_stream.restore(plant)
+        for perception, saved in zip(self.perceptions, seen, strict=True):
             perception.restore(saved)
 
     def _restore_episode(self, episode: Episode) -> None:
@@ -362,6 +364,7 @@ class Environment(Copyable):
             self._start_random = np.random.RandomState(seed)
         self._start_is_own = True
         self.plant_random = np.random.default_rng(children[1])
+        self._plant_stream = Stream(self.plant_random)
         self._perception_randoms = [np.random.default_rng(child) for child in children[2 : 2 + self.n_players]]
         self.new_game()
 
@@ -385,7 +388,7 @@ class Environment(Copyable):
     def _make_views(self) -> None:
         """Views of what Python and compiled code share."""
         self.game: Game = view(self._referee, Game)
-        self._played = bytes_from(self._referee, Game)
+        self._played = bytes_from(self._referee, Game).data
         self._slots = [self._action[r, : form.rows].reshape(form.shape) for r, form in enumerate(self.formats)]
 
     def _make_slices(self) -> None:

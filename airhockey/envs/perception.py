@@ -2,13 +2,13 @@
 
 import math
 from collections import deque
-from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs.disturbances import Disturbances
+from airhockey.envs.random_stream import Stream
 
 Array = NDArray[np.float64]
 
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 class PerceptionState(NamedTuple):
     """A moment of a player's perception: its random stream, the episode's biases, what was seen, how long the puck is lost."""
 
-    random: Mapping[str, Any]
+    random: Any
     bias: Array
     seen: tuple[Array, ...]
     lost_for: int
@@ -49,9 +49,12 @@ class Perception:
         self._bias = np.zeros(self.deviation.size)
         self._seen: deque[Array] = deque(maxlen=disturbances.delay + 1)
         self._lost_for = 0
+        self._stream: Stream | None = None
 
     def reset(self, random: np.random.Generator) -> None:
         """Begin an episode: draw its biases; nothing has been seen yet."""
+        if self._stream is None or self._stream.generator is not random:
+            self._stream = Stream(random)
         self.random = random
         self._bias = np.zeros(self.deviation.size)  # a new one: saved states keep the old
         self._bias[:2] = random.normal(0.0, self._profile.puck.position_bias, 2)
@@ -71,14 +74,15 @@ class Perception:
 
     def save(self) -> PerceptionState:
         """What the next observations depend on besides the truth."""
-        return PerceptionState(self.random.bit_generator.state, self._bias, tuple(self._seen), self._lost_for)
+        assert self._stream is not None  # since the first reset
+        return PerceptionState(self._stream.save(), self._bias, tuple(self._seen), self._lost_for)
 
     def restore(self, state: PerceptionState) -> None:
         """Go back to what was saved, of this player or of one like it."""
-        self.random.bit_generator.state = state.random
-        self._bias, self._lost_for = state.bias, state.lost_for
-        self._seen.clear()
-        self._seen.extend(state.seen)
+        assert self._stream is not None
+        self._stream.restore(state[0])
+        _, self._bias, seen, self._lost_for = state
+        self._seen = deque(seen, self._seen.maxlen)
 
     def _lose_track(self, seen: Array) -> None:
         """During a loss, show the last state of the puck that was seen."""

@@ -8,20 +8,18 @@ import ctypes
 from typing import Any, NamedTuple
 
 import mujoco
-import numpy as np
-from numpy.typing import NDArray
 
-Bytes = NDArray[np.uint8]
+from airhockey.envs.copying import Copyable
 
 
 class PhysicsState(NamedTuple):
     """A moment of the physics."""
 
-    buffer: Bytes
+    buffer: bytes
     time: float
 
 
-class Physics:
+class Physics(Copyable):
     """Saves and restores a model's data, which lives as long as this does.
 
     Args:
@@ -29,13 +27,20 @@ class Physics:
     """
 
     def __init__(self, data: mujoco.MjData) -> None:
+        self.__setstate__(data)
+
+    def __getstate__(self) -> mujoco.MjData:
+        """All that is not an address: a copy finds the addresses of its own data."""
+        return self.data
+
+    def __setstate__(self, data: mujoco.MjData) -> None:
         self.data = data
         self._buffer = _buffer_of(data)
         self._counts = data.warning.number
 
     def save(self) -> PhysicsState:
         """The present moment, in memory of its own."""
-        return PhysicsState(self._buffer.copy(), self.data.time)
+        return PhysicsState(self._buffer.tobytes(), self.data.time)
 
     def restore(self, state: PhysicsState) -> None:
         """Go to a moment that was saved from the same model, here or in another process."""
@@ -51,10 +56,10 @@ _SAVED = (
 """They stand at the beginning of the buffer, one after the other; what stands between them is saved, too."""
 
 
-def _buffer_of(data: Any) -> Bytes:
+def _buffer_of(data: Any) -> memoryview:
     """The bytes from the positions, which come first, to the end of the last array that is saved."""
     first = data.qpos.ctypes.data
     size = max(
         array.ctypes.data + array.nbytes - first for array in (getattr(data, name) for name in _SAVED) if array.size
     )
-    return np.ctypeslib.as_array((ctypes.c_uint8 * size).from_address(first))
+    return memoryview((ctypes.c_uint8 * size).from_address(first)).cast("B")

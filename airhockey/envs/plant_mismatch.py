@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.copying import Copyable
 from airhockey.envs.disturbances import Mismatch
 from airhockey.envs.specs import RobotSpec
 
@@ -15,7 +16,7 @@ Plant = dict[str, NDArray[np.float64]]
 """An episode's values of those fields of the model."""
 
 
-class PlantMismatch:
+class PlantMismatch(Copyable):
     """Changes a compiled scene in place; the nominal values are kept, so that draws do not accumulate.
 
     Args:

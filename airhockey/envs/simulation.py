@@ -34,7 +34,7 @@ class SimulationState(NamedTuple):
     """A moment of a simulation: the physics, what controllers and opponent remember, and the latest readings."""
 
     physics: PhysicsState
-    memory: NDArray[np.uint8]
+    memory: bytes
     flat: Array
 
 
@@ -166,7 +166,7 @@ class Simulation(Copyable):
 
     def save(self) -> SimulationState:
         """All that the next steps depend on."""
-        return SimulationState(self._physics.save(), self._remembered.copy(), self.flat.copy())
+        return SimulationState(self._physics.save(), self._remembered.tobytes(), self.flat.copy())
 
     def restore(self, state: SimulationState) -> None:
         """Go to a moment that this simulation, or one like it, saved."""
@@ -222,7 +222,7 @@ class Simulation(Copyable):
         arrays = {"ctrl": data.ctrl, "qpos": data.qpos, "qvel": data.qvel, "xpos": data.xpos}
         known = addresses | view(self._memory, Geometry)._asdict() | arrays
         self._plant = Plant(**{name: known[name] for name in Plant._fields})
-        self._remembered = bytes_from(self._memory, Controller)  # what comes before is the same at all times
+        self._remembered = bytes_from(self._memory, Controller).data  # what comes before is the same at all times
 
     def _geometry(self, data: Any) -> Geometry:
         model, robot = self.model, self.robot

@@ -123,20 +123,19 @@ def match_jobs(options: MatchOptions) -> list[GameJob]:
     """The games of a match."""
     jobs = []
     for index in range(options.games):
-        players = list(
-            zip(
-                (options.home, options.away),
-                (options.home_order, options.away_order),
-                options.python,
-                options.settings,
-                strict=True,
-            )
+        job = GameJob(
+            str(index),
+            options.home,
+            options.away,
+            options.home,
+            options.away,
+            game_seed(options.seed, str(index)),
+            options.home_order,
+            options.away_order,
+            *options.python,
+            *options.settings,
         )
-        agents, orders, pythons, settings = zip(
-            *(players[::-1] if options.swap_sides and index % 2 else players), strict=True
-        )
-        seed = game_seed(options.seed, str(index))
-        jobs.append(GameJob(str(index), *agents, *agents, seed, *orders, *pythons, *settings))
+        jobs.append(job.swapped() if options.swap_sides and index % 2 else job)
     return jobs
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from airhockey import envs
 from airhockey.envs.editions import DEFAULT
-from airhockey.errors import ActionError, AirHockeyError
+from airhockey.errors import ActionError
 from airhockey.evaluator.isolation.failures import AgentDied, AgentTimeout, describe
 from airhockey.evaluator.isolation.limits import Limits
 from airhockey.evaluator.pacing import PAUSE
@@ -150,6 +150,9 @@ def _remedy(failure: BaseException, printed: str, limits: Limits) -> str:
         return "import what there is today, or evaluate it with an interpreter that has the old one (--python PATH)"
     if any(word in text for word in ("imports '", "has no such file", "defines no function")):
         return "mend the import, and see that the file is part of the submission"
-    if isinstance(failure, AirHockeyError) and "Read-only file system" in str(failure):
-        return "write to tempfile.gettempdir(): nothing else can be written in a sandbox"
+    if any(word in text for word in ("Read-only file system", "PermissionError")):
+        return (
+            "write to tempfile.gettempdir(): nothing else can be written in a sandbox; --isolate process lets it write "
+            "wherever you can"
+        )
     return "mend the code at that line; `hockey evaluate --isolate none --jobs 1` runs it under a debugger"

@@ -1,10 +1,10 @@
 """The puck's motion, filter and prediction against the simulator, whose true state they must match."""
 
-import importlib.util
 import pathlib
 
 import numpy as np
 import pytest
+from sources import load_script
 
 from airhockey import envs
 from airhockey.agents.estimation.kalman import PuckFilter
@@ -58,10 +58,7 @@ def test_a_bounce_is_the_simulators_but_for_the_chance_in_its_restitution(quiet,
 
 
 def test_the_constants_are_what_the_script_identifies(quiet):
-    path = pathlib.Path(__file__).parents[2] / "scripts" / "identify_bounces.py"
-    spec = importlib.util.spec_from_file_location("identify_bounces", path)
-    script = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(script)
+    script = load_script(pathlib.Path(__file__).parents[2], "identify_bounces")
     found = script.identify(quiet, bounces=60, seed=1)
     assert found["restitution"] == pytest.approx(puck_motion().restitution, abs=0.03)
     assert found["slip_impulse"] == pytest.approx(puck_motion().slip_impulse, abs=0.003)

@@ -14,6 +14,7 @@ from arms import ALL, episode_bits, standing, swinging, with_puck
 
 import airhockey.envs.gymnasium
 from airhockey import envs
+from airhockey.envs import random_stream
 from airhockey.envs.pettingzoo import TournamentEnv
 from airhockey.envs.physics import Physics
 from airhockey.envs.tasks import reward_for
@@ -347,3 +348,72 @@ def test_the_edition_of_2025(name):
     assert future(far) == expected == future(env)
     env.state = state
     assert future(env) == expected
+
+
+@pytest.mark.parametrize("kept", ["bytes", "dictionary"])
+def test_a_random_stream_goes_back_to_the_bit(kept, monkeypatch):
+    if kept == "dictionary":  # where NumPy keeps a generator's state otherwise
+        monkeypatch.setattr(random_stream, "_is_as_expected", lambda: False)
+    stream = random_stream.Stream(np.random.default_rng(7))
+    stream.generator.integers(0, 2**32, 3, dtype=np.uint32)  # half a draw is left
+    state, told = stream.save(), stream.generator.bit_generator.state
+    assert isinstance(state, dict) == (kept == "dictionary")
+
+    def draws(random):
+        return random.integers(0, 2**32, 3, dtype=np.uint32).tobytes() + random.standard_normal(50).tobytes()
+
+    twins = [way(stream) for way in WAYS.values()]
+    expected = draws(stream.generator)
+    assert [draws(twin.generator) for twin in twins] == [expected] * len(twins)
+    stream.restore(state)
+    assert stream.generator.bit_generator.state == told
+    assert draws(stream.generator) == expected
+    other = random_stream.Stream(np.random.default_rng(8))
+    other.restore(state)
+    assert draws(other.generator) == expected
+    monkeypatch.setattr(random_stream, "_is_as_expected", lambda: kept != "bytes")
+    elsewhere = random_stream.Stream(np.random.default_rng(9))  # in a process that keeps it the other way
+    elsewhere.restore(state)
+    assert draws(elsewhere.generator) == expected
+
+
+def test_parts_that_hold_addresses_are_copied_with_what_they_point_to():
+    env = mid_episode("7dof-hit", "harsh")
+    state = env.simulation.save()
+    for way in WAYS.values():
+        physics, mismatch = way(env.simulation._physics), way(env._mismatch)
+        before = env.simulation.data.qpos.tobytes(), env.simulation.model.body_mass.tobytes()
+        physics.data.qpos[:] = 0.5
+        physics.restore(state.physics)
+        assert physics.data.qpos.tobytes() == before[0]
+        physics.data.qpos[:] = 0.5
+        mismatch.restore(None)
+        assert (env.simulation.data.qpos.tobytes(), env.simulation.model.body_mass.tobytes()) == before
+
+
+@pytest.mark.parametrize("kind", ["PlanarPositionHit", "IiwaPositionTournament", "IiwaPositionDefend", "torques"])
+@WAY
+def test_the_official_base_environments(kind, way):
+    pytest.importorskip("mushroom_rl")
+    from airhockey.compat.air_hockey_challenge.environments import iiwas, position_control_wrapper
+
+    np.random.seed(3)
+    env = iiwas.AirHockeyHit() if kind == "torques" else getattr(position_control_wrapper, kind)()
+    env.reset()
+    shape = env.env_info["rl_info"].action_space.low.shape if kind == "torques" else (2, env._n)
+
+    def acted(one, steps):
+        random, seen = np.random.default_rng(1), []
+        for _ in range(steps):
+            action = random.uniform(-0.5, 0.5, shape)
+            pair = [action, action] if kind == "IiwaPositionTournament" else action
+            seen.append(one.step(pair)[0])
+        return np.concatenate(seen).tobytes() + one._data.qpos.tobytes() + one.reset().tobytes()
+
+    acted(env, 3)
+    twin, before = way(env), env._data.qpos.tobytes()
+    assert twin._data is twin._env.simulation.data and twin._data is not env._data
+    assert twin.env_info is twin._env.env_info and twin.info is twin.env_info["rl_info"]
+    expected = acted(twin, 5)
+    assert env._data.qpos.tobytes() == before
+    assert acted(env, 5) == expected

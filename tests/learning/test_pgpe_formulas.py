@@ -222,3 +222,20 @@ def test_a_search_that_goes_astray_is_stopped(factor, value, message):
     search = Pgpe(Hyperpolicy(MEAN, np.log(factor * SIGMA)), *FREE)
     with pytest.raises(DivergedError, match=message):
         check_progress(search, SIGMA, np.array([1.0, value]))
+
+
+def test_the_thesis_updates_sigma_itself():
+    """dσ = α 1/N Σ (J − b) ((θ − μ)² − σ²)/σ, written out."""
+    theta = POLICY.sample(np.random.default_rng(5), 40)
+    values = worth(theta)
+    search = Pgpe(POLICY, *FREE, natural=False, baseline="mean", normalize=False, sigma_rule="thesis")
+    search.tell(theta, values, 1e-4)
+    by_hand = (((theta - MEAN) ** 2 - SIGMA**2) / SIGMA * (values - values.mean())[:, None]).mean(axis=0)
+    np.testing.assert_allclose(search.sigma, SIGMA + 1e-4 * by_hand, rtol=1e-12)
+
+
+def test_a_step_that_leaves_no_sigma_is_said():
+    search = Pgpe(POLICY, *FREE, natural=False, baseline="mean", normalize=False, sigma_rule="thesis")
+    theta = MEAN + SIGMA * np.array([[0.0], [0.0], [3.0]])
+    with pytest.raises(DivergedError, match="--learning-rate"):
+        search.tell(theta, np.array([1.0, 1.0, 0.0]), 1e3)

@@ -1,6 +1,8 @@
 """Training skills: the same run for the same seed, through a kill and --resume; OAC beside SAC; constraints on the way."""
 
+import copy
 import csv
+import pickle
 import warnings
 
 import msgspec
@@ -238,3 +240,18 @@ def test_other_software_cannot_go_on_with_a_run(finished):
             SkillFolder.resume(path)
     finally:
         (path / "train.json").write_text(manifest)
+
+
+@pytest.mark.parametrize("way", [copy.copy, copy.deepcopy, lambda env: pickle.loads(pickle.dumps(env))])
+def test_a_copied_environment_of_a_skill_is_one_of_its_own(way):
+    env = DefendEnv("3dof", "server")
+    env.reset(seed=2)
+    env.step(np.array([0.3, -0.2]))
+    twin = way(env)
+
+    def played(one):
+        steps = [one.step(np.array([0.5, 0.1 * k])) for k in range(4)]
+        return [(seen.tobytes(), reward) for seen, reward, *_ in steps]
+
+    expected = played(twin)
+    assert played(env) == expected

@@ -73,3 +73,11 @@ def test_a_parameter_without_a_value_has_no_start():
 def test_an_unknown_parameter_is_not_set():
     with pytest.raises(ConfigurationError, match=r"'hit\.speed'"):
         trainable.replaced(TUNED, {"hit.speed": 1.0})
+
+
+def test_a_mean_on_its_bound_is_named():
+    names = trainable.names_of("hit")[:3]
+    lower, upper = trainable.bounds(names)
+    middle = 0.5 * (lower + upper)
+    assert trainable.on_bounds(names, middle) == []
+    assert trainable.on_bounds(names, np.array([lower[0], middle[1], upper[2]])) == [names[0], names[2]]

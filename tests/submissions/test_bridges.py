@@ -96,6 +96,32 @@ def test_a_copy_that_says_nothing_new_is_not_used(tmp_path: Path) -> None:
     assert own is not None and not own.wins and own.told() is None
 
 
+KINEMATICS = """import mujoco
+from air_hockey_challenge.utils.transformations import robot_to_world
+def forward_kinematics(mj_model, mj_data, q, link="ee"): return "theirs"
+def inverse_kinematics(mj_model, mj_data, desired_position, desired_rotation=None, initial_q=None, link="ee"): pass
+def jacobian(mj_model, mj_data, q, link="ee"): pass
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "used"),
+    [
+        (KINEMATICS, True),
+        (KINEMATICS.replace("import mujoco", "import mujoco_py"), False),  # of its time, and not here
+        (KINEMATICS.replace("utils.transformations", "utils.vectors"), False),
+        (KINEMATICS.replace("def jacobian", "def _jacobian"), False),  # others import it
+    ],
+)
+def test_what_agents_compute_with_is_the_copys_own(tmp_path: Path, text: str, used: bool) -> None:
+    folder = copy_of_the_package(tmp_path)
+    (folder / "utils" / "kinematics.py").write_text(text)
+    own = look_at(folder)
+    assert own is not None and not own.wins
+    assert own.modules == (("utils/kinematics.py",) if used else ())
+    assert ("computes with its own copy's utils/kinematics.py" in str(own.told())) == used
+
+
 @pytest.mark.parametrize(
     ("file", "text", "said"),
     [

@@ -13,7 +13,9 @@ import pytest
 import tools
 
 from airhockey import envs
+from airhockey.agents.packaging.edition import edition_of_entry
 from airhockey.agents.submission import submission_config, wanted_order
+from airhockey.envs.editions import DEFAULT
 from airhockey.errors import AirHockeyError
 from airhockey.evaluator.isolation.build import build_agent
 from airhockey.evaluator.isolation.failures import AgentRaised
@@ -26,10 +28,13 @@ LIMITS = Limits(start=300.0, patience=60.0)
 STEPS = 8
 
 PLAYS = sorted({
-    "agent_id_fixed", "array_defaults", "atacom", "environments_of_its_own", "helper_packages", "module_of_the_root",
-    "network_of_spaces", "no_base_class", "notebooks_beside", "numpy_1", "one_agent_a_task", "order_1", "order_5",
-    "order_minus_1", "order_none", "own_copy", "own_copy_extended", "own_copy_with_more", "planar_only", "preprocessors",
-    "relative_files", "saved_agent", "spawned_planner", "threaded_planner", "weights_of_a_gpu",
+    "agent_id_fixed", "answers_of_other_kinds", "array_defaults", "atacom", "compiles_and_caches", "configs_of_all_kinds",
+    "data_of_the_package", "environments_of_its_own", "evaluates_itself", "files_opened_late", "helper_packages",
+    "kinematics_of_the_model", "limits_changed_in_place", "module_of_the_root", "names_of_2025", "network_of_spaces",
+    "no_base_class", "notebooks_beside", "numpy_1", "one_agent_a_task", "optimizer_at_every_step", "order_1", "order_5",
+    "order_minus_1", "order_none", "own_copy", "own_copy_extended", "own_copy_with_more", "own_kinematics",
+    "paths_of_all_kinds", "planar_only", "pool_of_processes", "preprocessors", "relative_files", "saved_agent",
+    "source_layout", "spawned_planner", "threaded_planner", "weights_of_a_gpu",
 })  # fmt: skip
 
 REFUSED = {
@@ -40,6 +45,7 @@ REFUSED = {
     "size_one_arrays": r"TypeError: only 0-dimensional arrays can be converted.*sway.py",
     "template_as_it_was": r"NotImplementedError",
     "wants_a_gpu": r"AssertionError: Torch not compiled with CUDA enabled|CUDA",
+    "writes_into_its_folder": r"Read-only file system|Permission denied",
     "wrong_shape": r"the action has shape \(2, 7\); with interpolation order 5 it must be \(3, 7\)",
 }
 
@@ -95,7 +101,8 @@ def play(entry: Path, task: str, mode: str, side: int = 1) -> Iterator[Any]:
     """The actions of a few steps, after which the agent is gone."""
     order = wanted_order(entry)
     game = task == "tournament"
-    env = envs.make(task, ((order, 3) if side == 1 else (3, order)) if game else order)
+    orders = ((order, 3) if side == 1 else (3, order)) if game else order
+    env = envs.make(task, orders, edition=edition_of_entry(entry) or DEFAULT)
     agent = build_agent(str(entry), env, side, mode=mode, limits=LIMITS)  # type: ignore[arg-type]
     try:
         agent.episode_start()

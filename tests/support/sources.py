@@ -1,7 +1,9 @@
-"""A copy of the project's sources, to build from."""
+"""The project's own files: a copy to build from, and its scripts as modules."""
 
+import importlib.util
 import shutil
 from pathlib import Path
+from types import ModuleType
 
 _AT_THE_ROOT = {"runs", "build", "dist", "tests", "site"}
 
@@ -18,3 +20,13 @@ def copy_sources(root: Path, target: Path) -> None:
         ]
 
     shutil.copytree(root, target, symlinks=True, ignore=left_out)
+
+
+def load_script(root: Path, name: str) -> ModuleType:
+    """A script of `scripts/` as a module."""
+    spec = importlib.util.spec_from_file_location(name, root / "scripts" / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module

@@ -39,16 +39,23 @@ def situation(puck: PuckEstimate, controller: AtacomController) -> Situation:
     return Situation(puck, to_table(controller.tip), controller.tip_velocity)
 
 
-DEFEND = LearnedTask(
-    "defend",
-    f.DEFEND_MIRROR,
-    lambda s: f.defend_features(s.puck.state, s.tip, s.tip_velocity),
-    lambda s: f.defended(s.puck.state, s.tip),
-)
-HOME_SKILL = LearnedTask(
-    "home",
-    f.HOME_MIRROR,
-    lambda s: f.home_features(s.puck.state, s.tip, s.tip_velocity),
-    lambda s: bool(np.hypot(*(HOME - s.tip)) < ARRIVED and np.hypot(*s.tip_velocity) < 0.1),
-)
+def _see_defence(now: Situation) -> f.Features:
+    return f.defend_features(now.puck.state, now.tip, now.tip_velocity)
+
+
+def _defended(now: Situation) -> bool:
+    return f.defended(now.puck.state, now.tip)
+
+
+def _see_home(now: Situation) -> f.Features:
+    return f.home_features(now.puck.state, now.tip, now.tip_velocity)
+
+
+def _at_home(now: Situation) -> bool:
+    return bool(np.hypot(*(HOME - now.tip)) < ARRIVED and np.hypot(*now.tip_velocity) < 0.1)
+
+
+# Functions with names, since players are pickled.
+DEFEND = LearnedTask("defend", f.DEFEND_MIRROR, _see_defence, _defended)
+HOME_SKILL = LearnedTask("home", f.HOME_MIRROR, _see_home, _at_home)
 SKILLS = {skill.name: skill for skill in (DEFEND, HOME_SKILL)}

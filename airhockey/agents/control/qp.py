@@ -84,8 +84,7 @@ class OsqpSolver:
         Raises:
             MissingDependencyError: It is not installed.
         """
-        self._osqp = _import("osqp")
-        self._sparse = _import("scipy.sparse")
+        self._problem, self._sparse = _import("osqp").OSQP, _import("scipy.sparse").csc_matrix
         self._settings = {
             "eps_abs": tolerance,
             "eps_rel": tolerance,
@@ -98,11 +97,11 @@ class OsqpSolver:
         """See `QuadraticProgram.solve`."""
         if np.any(lower > upper + SAME):
             return None
-        problem = self._osqp.OSQP()
+        problem = self._problem()
         problem.setup(
-            P=self._sparse.csc_matrix(np.triu(hessian)),
+            P=self._sparse(np.triu(hessian)),
             q=np.ascontiguousarray(gradient),
-            A=self._sparse.csc_matrix(rows),
+            A=self._sparse(rows),
             l=lower,
             u=np.maximum(upper, lower),
             **self._settings,

@@ -77,7 +77,8 @@ def new_sights(env_info: Mapping[str, Any], joints: bool, n_envs: int) -> Sights
         len(env_info["opponent_ee_ids"]) > 0,
         np.zeros((n_envs, STACK, 4)),
         np.zeros((n_envs, 4)),
-        *np.zeros((2, n_envs, 2)),
+        np.zeros((n_envs, 2)),
+        np.zeros((n_envs, 2)),
         joints,
         puck_motion().constants,
     )

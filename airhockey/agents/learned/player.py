@@ -60,6 +60,7 @@ class LearnedPlayer(AgentBase):
         learned_actions.warm_up(self._controls)
         learned_features.warm_up(self._sights)
         self.reset()
+        self._compile()
 
     @classmethod
     def load(cls, folder: Path, env_info: Mapping[str, Any], **kwargs: Any) -> "LearnedPlayer":
@@ -71,14 +72,17 @@ class LearnedPlayer(AgentBase):
         network = Network.load(folder / NETWORK)
         try:
             policy = yaml.safe_load((folder / POLICY).read_text(encoding="utf-8"))
-            choice = {
-                "actions": str(policy["actions"]),
-                "repeat": int(policy["repeat"]),
-                "horizon": int(policy["horizon"]),
-            }
+            actions, repeat, horizon = str(policy["actions"]), int(policy["repeat"]), int(policy["horizon"])
         except (OSError, ValueError, KeyError, TypeError, yaml.YAMLError) as error:
             raise ConfigurationError(f"cannot read the policy {str(folder / POLICY)!r}: {error}") from error
-        return cls(env_info, network, **choice, **kwargs)
+        return cls(env_info, network, actions, repeat, horizon, **kwargs)
+
+    def _compile(self) -> None:
+        """Play a step, so that none has to wait for the compiler."""
+        nothing = np.zeros(self.env_info["rl_info"].observation_space.shape)
+        nothing[self.env_info["joint_pos_ids"]] = spec_of(self.env_info).start
+        self.draw_action(nothing)
+        self.reset()
 
     def reset(self) -> None:
         """The next observation is an episode's first."""

@@ -20,6 +20,7 @@ _MARKS = (
     ".git", "air_hockey_challenge", "submission.yaml", "run.py", "setup.py", "setup.cfg", "pyproject.toml", "requirements.txt",
     "Dockerfile", "README.md",
 )  # fmt: skip
+_INSTALLERS = ("setup.py", "setup.cfg", "pyproject.toml")
 _DEPTH = 3
 """How many folders deep a checkout is searched for its agent."""
 _NOT_SEARCHED = frozenset(("__pycache__", "air_hockey_challenge", "node_modules", "site-packages", "build", "dist"))
@@ -36,6 +37,13 @@ class Checkout:
 
     root: Path
     package: Path
+
+    @property
+    def import_path(self) -> tuple[Path, ...]:
+        """Where its modules are looked for: the root, the package's folder, and `src` of a checkout that is to be installed."""
+        source = self.root / "src"
+        installed = source.is_dir() and any((self.root / name).is_file() for name in _INSTALLERS)
+        return tuple(dict.fromkeys((self.root, self.package, *((source,) if installed else ()))))
 
     @property
     def own_challenge(self) -> Path | None:

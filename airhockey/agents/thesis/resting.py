@@ -4,6 +4,8 @@ Without it a puck at the border of what can be played is one thing in this step 
 is held for playable where the task does not hold it for prepared.
 """
 
+from math import hypot
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -34,15 +36,20 @@ class RestingPuck:
 
     def reset(self) -> None:
         """Forget the puck."""
-        self._sum, self._count = np.zeros(2), 0
+        self._sum_x, self._sum_y, self._count = 0.0, 0.0, 0
         self.playable: bool | None = None
 
     def see(self, puck: PuckEstimate) -> None:
         """Take an estimate."""
-        away = puck.position - self._sum / max(self._count, 1)
-        if puck.speed > ROLLING or (self._count > 0 and np.hypot(*away) > MOVED):
+        x, y, count = (
+            float(puck.state[0]),
+            float(puck.state[1]),
+            self._count,
+        )  # plain numbers: it is called in every step
+        if puck.speed > ROLLING or (count > 0 and hypot(x - self._sum_x / count, y - self._sum_y / count) > MOVED):
             self.reset()
         if self.playable is None:
-            self._sum, self._count = self._sum + puck.position, self._count + 1
+            self._sum_x, self._sum_y, self._count = self._sum_x + x, self._sum_y + y, self._count + 1
             if self._count >= ENOUGH:
-                self.playable = enough_space(self._sum / self._count, SIDE, END)
+                middle = np.array([self._sum_x, self._sum_y]) / self._count
+                self.playable = enough_space(middle, SIDE, END)

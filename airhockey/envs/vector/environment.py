@@ -124,10 +124,11 @@ class VectorEnvironment:
         """Arrays for `reset` and `step` to write into."""
         n, players = self.num_envs, self.single.n_players
         width, count = self.single.true_observation.size, self.single.constraint_values.size
-        flags = [np.zeros(n, np.bool_) for _ in range(3)]
+        terminated, truncated, success = (np.zeros(n, np.bool_) for _ in range(3))
         rewards = np.zeros(n if players == 1 else (n, players))
         seen, final = np.zeros((n, width)), np.zeros((n, width))
-        return Batch(seen, rewards, *flags, np.zeros(n, np.int64), np.zeros((n, count)), final)
+        told, values = np.zeros(n, np.int64), np.zeros((n, count))
+        return Batch(seen, rewards, terminated, truncated, success, told, values, final)
 
     def reset(self, seed: Seeds = None, into: Batch | None = None, which: Flags | None = None) -> Batch:
         """Begin an episode, or in the tournament a game.

@@ -22,17 +22,17 @@ Array = NDArray[Any]
 
 
 class Batched(Protocol):
-    """What the adapters of this package need of a batch.
-
-    Attributes:
-        num_envs: N.
-        constraint_slices: Where each constraint's values stand in a row of `Batch.constraints`.
-        horizon: Steps after which an episode is truncated.
-    """
+    """What the adapters of this package need of a batch."""
 
     num_envs: int
-    constraint_slices: dict[str, slice]
-    horizon: int
+
+    @property
+    def constraint_slices(self) -> dict[str, slice]:
+        """Where each constraint's values stand in a row of `Batch.constraints`."""
+
+    @property
+    def horizon(self) -> int:
+        """Steps after which an episode is truncated."""
 
     def reset(self, seed: Seeds = None, into: Batch | None = None, which: Flags | None = None) -> Batch:
         """Begin an episode in all or some."""

@@ -48,7 +48,7 @@ class Senses(NamedTuple):
         randoms: Addresses of the players' generators. Shape (N, P).
         bias: The episodes'. Shape (N, P, D).
         seen: What was seen in the latest steps, in a ring. Shape (N, P, delay + 1, D).
-        count: How many observations there were. Shape (N, P).
+        times: How many observations there were. Shape (N, P).
         lost_for: For how many more steps the puck is lost. Shape (N, P).
         scratch: Shape (N, 1).
     """
@@ -59,7 +59,7 @@ class Senses(NamedTuple):
     randoms: Counts
     bias: Array
     seen: Array
-    count: Counts
+    times: Counts
     lost_for: Counts
     scratch: NDArray[np.uint64]
 
@@ -96,7 +96,7 @@ def take_over(senses: Senses, i: int, env: Environment) -> None:
         if senses.blurred:
             _, bias, seen, senses.lost_for[i, p] = perception.save()
             senses.bias[i, p] = bias[: senses.bias.shape[2]]
-            senses.count[i, p] = len(seen)
+            senses.times[i, p] = len(seen)
             senses.seen[i, p, : len(seen)] = seen
 
 
@@ -104,7 +104,7 @@ def give_back(senses: Senses, i: int, env: Environment) -> None:
     """Bring an environment's own perceptions up to date."""
     for p, perception in enumerate(env.perceptions if senses.blurred else ()):
         random, bias, _, _ = perception.save()
-        length, count = senses.seen.shape[2], int(senses.count[i, p])
+        length, count = senses.seen.shape[2], int(senses.times[i, p])
         seen = tuple(senses.seen[i, p, k % length].copy() for k in range(max(0, count - length), count))
         perception.restore(PerceptionState(random, bias, seen, int(senses.lost_for[i, p])))
 
@@ -123,7 +123,7 @@ def shake(profile: Profile, senses: Senses, i: int, noise: Array) -> None:
 def observe(profile: Profile, senses: Senses, i: int, p: int, true: Array, observation: Array) -> None:
     """Write what player p of environment i sees; see `Perception.observe`. Shapes (D,), (D,)."""
     ring, length = senses.seen[i, p], senses.seen.shape[2]
-    count, random = senses.count[i, p], senses.randoms[i, p]
+    count, random = senses.times[i, p], senses.randoms[i, p]
     standard_normal(random, observation)
     for k in range(true.shape[0]):
         observation[k] = true[k] + senses.bias[i, p, k] + profile.deviation[k] * observation[k]
@@ -142,4 +142,4 @@ def observe(profile: Profile, senses: Senses, i: int, p: int, true: Array, obser
         newest[k] = observation[k]
     for k in range(true.shape[0]):
         observation[k] = oldest[k]
-    senses.count[i, p] = count + 1
+    senses.times[i, p] = count + 1

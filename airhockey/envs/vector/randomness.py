@@ -65,11 +65,11 @@ def standard_normal(generator: int, values: Any) -> None:
 @compiled
 def uniform(generator: int) -> float:
     """`generator.random()`."""
-    return _uniform(generator)
+    return float(_uniform(generator))
 
 
 @compiled
-def integer(generator: int, low: int, high: int, scratch: Any) -> int:
+def integer(generator: int, low: int, high: int, scratch: Any) -> Any:
     """`generator.integers(low, high + 1)`; `scratch` is an array of unsigned integers. Shape (1,)."""
     _bounded_fill(generator, np.uint64(low), np.uint64(high - low), 1, False, _data(scratch))
     return np.int64(scratch[0])

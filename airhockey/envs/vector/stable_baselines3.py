@@ -46,6 +46,21 @@ class BatchVecEnv(VecEnv):
         self._lengths = np.zeros(self.env.num_envs, np.int64)
         super().__init__(self.env.num_envs, self.env.single_observation_space, self.env.single_action_space)
 
+    def seed_from(self, seeds: Any) -> None:
+        """Have the next reset begin with these seeds, one for each environment: integers or seed sequences."""
+        self._seeds = list(seeds)
+
+    def get_state(self) -> tuple[Any, ...]:
+        """The present moment of the batch and of the episodes' counts."""
+        batch: Any = self.env.batch
+        return batch.get_state(), self._returns.copy(), self._lengths.copy()
+
+    def set_state(self, state: tuple[Any, ...]) -> None:
+        """Go to a moment that this adapter, or one of a batch made with the same arguments, saved."""
+        batch: Any = self.env.batch
+        batch.set_state(state[0])
+        self._returns[:], self._lengths[:] = state[1:]
+
     def reset(self) -> Array:
         """Begin an episode in every environment, with the seeds given before, if any."""
         observations, _ = self.env.reset(seed=list(self._seeds))

@@ -7,7 +7,8 @@ from numba.core import types
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from airhockey.envs.kernel.control_step import DONE, control_step
+from airhockey.envs.kernel.control_step import DONE as DONE
+from airhockey.envs.kernel.control_step import control_step
 from airhockey.envs.tasks import defend, game, hit, prepare
 from airhockey.envs.vector.compiling import compiled
 from airhockey.envs.vector.perception import Profile, Senses, observe, shake

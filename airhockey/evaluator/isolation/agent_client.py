@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.copying import NotCopyable
 from airhockey.errors import ActionError, EnvironmentFault
 from airhockey.evaluator.isolation import channel, memory_watch
 from airhockey.evaluator.isolation.answer_times import AnswerTimes
@@ -39,7 +40,7 @@ from airhockey.inputs.names import shown
 Array = NDArray[np.float64]
 
 
-class IsolatedAgent(AgentHandle):
+class IsolatedAgent(NotCopyable, AgentHandle):
     """An agent in a process of its own.
 
     Args:

@@ -30,7 +30,11 @@ def build_local(agent: str, env_info: dict[str, Any], agent_id: int = 1, **kwarg
     from airhockey.agents.submission import is_submission
 
     if is_submission(agent):
+        from airhockey.agents.packaging.checkout import find_checkout
         from airhockey.compat import build_entry
 
-        return LocalAgent(build_entry(Path(agent).expanduser(), env_info, agent_id, **kwargs))
+        path = Path(agent).expanduser()
+        root = find_checkout(path).root
+        home = None if root == Path.cwd() else str(root)  # a process of its own is there already
+        return LocalAgent(build_entry(path, env_info, agent_id, **kwargs), home)
     return LocalAgent(build_agent(agent, env_info, agent_id=agent_id, **kwargs))

@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.copying import NotCopyable
 from airhockey.evaluator.isolation.failures import AgentError
 
 Array = NDArray[np.float64]
@@ -73,7 +74,7 @@ def _shape(dimensions: int, *sizes: int) -> tuple[int, ...]:
     return shape
 
 
-class Memory:
+class Memory(NotCopyable):
     """One side's view of the shared memory."""
 
     def __init__(self, descriptor: int) -> None:

@@ -217,7 +217,7 @@ def filter_system_calls(libc, kernel):
 def build(job):
     """Import the submission's builder and call it."""
     root, package = job["root"], job["package"]
-    sys.path[:0] = [root] if root == package else [root, package]
+    sys.path[:0] = job["import_path"]
     os.environ["PYTHONPATH"] = os.pathsep.join(path for path in (root, os.environ.get("PYTHONPATH")) if path)
     if importlib.util.find_spec(CHALLENGE) is None:
         stand_in(job)

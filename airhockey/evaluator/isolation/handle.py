@@ -1,6 +1,7 @@
 """An agent wherever it lives: here, in a process, in a sandbox or behind a TCP port, it is called in one way."""
 
 import abc
+import contextlib
 import time
 from collections.abc import Callable, Sequence
 from typing import Any, Final
@@ -83,10 +84,12 @@ class LocalAgent(AgentHandle):
 
     Args:
         agent: Has `episode_start`, `draw_action` and perhaps `preprocessors`, `stop`, `phase` and `target`.
+        home: Working directory of a submission while its code runs; None for that of the evaluator.
     """
 
-    def __init__(self, agent: Any) -> None:
+    def __init__(self, agent: Any, home: str | None = None) -> None:
         self.agent = agent
+        self._home = home
         self.interpolation_order = getattr(agent, "interpolation_order", 3)
 
     @property
@@ -106,11 +109,18 @@ class LocalAgent(AgentHandle):
 
     def episode_start(self) -> None:
         """A serve begins."""
-        self.agent.episode_start()
+        with self._at_home():
+            self.agent.episode_start()
 
     def act(self, observation: Array) -> Any:
         """The next command."""
-        return self.agent.draw_action(observation)
+        if self._home is None:
+            return self.agent.draw_action(observation)
+        with self._at_home():
+            return self.agent.draw_action(observation)
+
+    def _at_home(self) -> contextlib.AbstractContextManager[None]:
+        return contextlib.nullcontext() if self._home is None else contextlib.chdir(self._home)
 
     def clock(self, kind: str) -> Callable[[], float]:
         """The wall clock, or the CPU time of this thread."""

@@ -88,6 +88,7 @@ def foreign_job(checkout: Checkout, inside: str, env: Any, agent_id: int, argume
     return {
         "root": inside,
         "package": package,
+        "import_path": [str(Path(inside) / folder.relative_to(checkout.root)) for folder in checkout.import_path],
         "arguments": {key: value for key, value in config.items() if key not in EVALUATION_KEYS} | arguments,
         "agent_id": agent_id,
         "size": len(boxes[0].low),

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs.actions import ActionFormat
+from airhockey.envs.copying import NotCopyable
 from airhockey.evaluator.isolation.failures import AgentDied, AgentError, AgentTimeout
 from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.isolation.modes import host_and_port
@@ -27,7 +28,7 @@ RESET, RESET_DONE, PREPROCESS, ACT = b"R", b"r", b"P", b"A"
 _CONNECT = 10.0  # [s] to connect
 
 
-class RemoteAgent(AgentHandle):
+class RemoteAgent(NotCopyable, AgentHandle):
     """The agent at the other end of a connection.
 
     Args:

@@ -110,7 +110,7 @@ class EpisodePlayer:
         self._rebuilding.allowed += REBUILD
         if waited_for is not None:
             assert self._task is not None
-            return failed(job, waited_for, self._task.seats[0].process)
+            return failed(job, waited_for, self.options.edition, self._task.seats[0].process)
         rollout = self.open(job)
         (seat,) = rollout.seats
         if seat.failure is not None:

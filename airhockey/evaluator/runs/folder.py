@@ -16,6 +16,7 @@ from typing import Any, ClassVar, Generic, Self, TypeVar
 import msgspec
 
 from airhockey import envs
+from airhockey.envs.copying import NotCopyable
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator.runs import journal
 from airhockey.evaluator.runs.disk import begin_folder, disk_errors, lock_folder, write_record
@@ -33,7 +34,7 @@ from airhockey.evaluator.runs.manifest import (
 Options = TypeVar("Options")
 
 
-class RunFolder(Generic[Options, Record]):
+class RunFolder(NotCopyable, Generic[Options, Record]):
     """A run's folder, opened for writing.
 
     Attributes:

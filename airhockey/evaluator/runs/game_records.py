@@ -76,6 +76,12 @@ class GameJob(msgspec.Struct, frozen=True):
     home_settings: tuple[str, ...] = ()
     away_settings: tuple[str, ...] = ()
 
+    def swapped(self) -> "GameJob":
+        """The same game with the players on each other's side."""
+        sides = [(f"home{what}", f"away{what}") for what in ("", "_agent", "_order", "_python", "_settings")]
+        there = {one: getattr(self, other) for home, away in sides for one, other in ((home, away), (away, home))}
+        return msgspec.structs.replace(self, **there)
+
 
 class Status(msgspec.Struct, frozen=True, kw_only=True):
     """How a game in progress stands, for a live line.

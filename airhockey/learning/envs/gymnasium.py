@@ -78,7 +78,7 @@ class LearningEnv(gymnasium.Env[Array, Array]):
 def spaces_of(batch: LearningBatch) -> tuple[spaces.Box, spaces.Box]:
     """Observation and action of one environment."""
     if batch.new_batch().observations.dtype == np.float32:
-        seen = spaces.Box(-LARGEST, LARGEST, (batch.observation_width,), np.float32)
+        seen: Any = spaces.Box(-LARGEST, LARGEST, (batch.observation_width,), np.float32)
     else:
         seen = spaces.Box(-np.inf, np.inf, (batch.observation_width,), np.float64)
     return seen, spaces.Box(-1.0, 1.0, batch.action_shape, np.float32)

@@ -48,13 +48,13 @@ def potential(kind: int, puck: Array, tip: Array, constants: Array) -> float:
     gap = hypot(puck[0] - tip[0], puck[1] - tip[1])
     if kind == _DEFEND:
         y = crossing(puck, LINE, HORIZON, constants)[1] if puck[0] > LINE else puck[1]
-        return -4.0 * abs(y - tip[1]) - 2.0 * min(hypot(puck[2], puck[3]), 2.0)
+        return float(-4.0 * abs(y - tip[1]) - 2.0 * min(hypot(puck[2], puck[3]), 2.0))
     if kind == _HIT:
         if puck[2] < 0.1 or puck[0] < tip[0]:
             return -2.0 * gap
         y = goal_line(puck, constants)
-        return min(1.0, puck[2] / 1.5) * (1.0 + 4.0 * exp(-((y / 0.15) ** 2)))
-    return -4.0 * max(0.0, abs(puck[1]) - 0.3) - gap
+        return float(min(1.0, puck[2] / 1.5) * (1.0 + 4.0 * exp(-((y / 0.15) ** 2))))
+    return float(-4.0 * max(0.0, abs(puck[1]) - 0.3) - gap)
 
 
 @allocating
@@ -64,7 +64,7 @@ def goal_line(puck: Array, constants: Array) -> float:
     while time < _FARTHEST:
         slide(there, _STEP, constants)
         if there[0] > HALF_LENGTH - 0.04:
-            return there[1]
+            return float(there[1])
         bounce(there, constants)
         time += _STEP
     return 10.0

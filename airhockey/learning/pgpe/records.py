@@ -22,7 +22,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True):
         candidates: Parameters tried in each iteration, N.
         episodes: Played with each of them, M.
         iterations: How many.
-        learning_rate, sigma_share, schedule, natural, baseline, normalize, symmetric: See `Pgpe` and `schedule`.
+        learning_rate, sigma_share, sigma_rule, schedule, natural, baseline, normalize, symmetric: See `Pgpe` and `schedule`.
         common_random_numbers: All candidates of an iteration play the same M episodes.
         discount: γ of the return.
         reward: "thesis" or "success" (1 for a success and 0 for a failure).
@@ -43,6 +43,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True):
     iterations: int = 40
     learning_rate: float = 1.0
     sigma_share: float = 0.5
+    sigma_rule: str = "log"
     schedule: str = "constant"
     natural: bool = True
     baseline: str = "optimal"

@@ -4,6 +4,7 @@
     ∇_ρ J ≈ 1/N Σᵢ (Ĵ(θᵢ) − b) ∇_ρ log ν(θᵢ)
     plain:    ρ ← ρ + α ∇_ρ J                         ρ = (μ, log σ)
     natural:  ρ ← ρ + α F⁻¹ ∇_ρ J                     Δμᵢ = α σᵢ² ∇_μᵢ J,  Δlog σᵢ = α/2 ∇_log σᵢ J
+    thesis:   Δμᵢ as one of these                     Δσᵢ = α 1/N Σ (Ĵ − b) ((θᵢ − μᵢ)² − σᵢ²)/σᵢ, of σ and not of its logarithm
 """
 
 from dataclasses import dataclass
@@ -56,6 +57,7 @@ class Pgpe:
             rate.
         symmetric: Sample in pairs.
         sigma_share: Learning rate of log σ, as a share of that of μ.
+        sigma_rule: What is updated, log σ ("log") or σ itself, by the thesis's rule ("thesis").
     """
 
     policy: Hyperpolicy
@@ -66,6 +68,7 @@ class Pgpe:
     normalize: bool = True
     symmetric: bool = False
     sigma_share: float = 1.0
+    sigma_rule: str = "log"
     moving: float | None = None
 
     @property
@@ -85,13 +88,27 @@ class Pgpe:
     def tell(self, theta: Array, values: Array, rate: float) -> None:
         """See `Search.tell`."""
         for_mean, for_log_sigma = self.gradient(theta, values)
+        plain = for_log_sigma
         if self.natural:
             fisher_mean, fisher_log_sigma = self.policy.fisher()
             for_mean, for_log_sigma = for_mean / fisher_mean, for_log_sigma / fisher_log_sigma
         mean = np.clip(self.policy.mean + rate * for_mean, self.lower, self.upper)
-        self.policy = Hyperpolicy(mean, self.policy.log_sigma + rate * self.sigma_share * for_log_sigma)
+        if self.sigma_rule == "log":
+            log_sigma = self.policy.log_sigma + rate * self.sigma_share * for_log_sigma
+        else:
+            log_sigma = self._log_sigma_of_the_thesis(rate * self.sigma_share, plain)
+        self.policy = Hyperpolicy(mean, log_sigma)
         average = float(values.mean())
         self.moving = average if self.moving is None else _MEMORY * self.moving + (1.0 - _MEMORY) * average
+
+    def _log_sigma_of_the_thesis(self, rate: float, for_log_sigma: Array) -> Array:
+        """σ + α ∇: with (θ − μ)² − σ² = σ² (z² − 1) its step is α σ ∇_log σ J. A step that leaves no σ > 0 has none."""
+        sigma = self.sigma * (1.0 + rate * for_log_sigma)
+        if not (sigma > 0.0).all():
+            raise DivergedError(
+                f"the thesis's rule makes σ {sigma.min():.3g}: a smaller --learning-rate or --sigma-rule log may help"
+            )
+        return np.log(sigma)
 
     def gradient(self, theta: Array, values: Array) -> tuple[Array, Array]:
         """The estimate of ∇_μ J and ∇_log σ J.

@@ -149,6 +149,12 @@ def bounds(names: Sequence[str]) -> tuple[Array, Array]:
     return np.array([one.lower for one in chosen]), np.array([one.upper for one in chosen])
 
 
+def on_bounds(names: Sequence[str], mean: Array) -> list[str]:
+    """Those whose mean sits on a bound: the search cannot go further, and the best value may lie beyond."""
+    lower, upper = bounds(names)
+    return [name for name, value, low, high in zip(names, mean, lower, upper, strict=True) if not low < value < high]
+
+
 def as_yaml(parameters: ThesisParameters, comment: Sequence[str] = ()) -> str:
     """A parameter file, as agents and `hockey evaluate --parameters` read it."""
     head = "".join(f"# {line}\n" for line in comment)

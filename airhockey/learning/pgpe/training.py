@@ -152,6 +152,7 @@ def search_of(settings: Settings) -> Search:
         normalize=settings.normalize,
         symmetric=settings.symmetric,
         sigma_share=settings.sigma_share,
+        sigma_rule=settings.sigma_rule,
     )
 
 

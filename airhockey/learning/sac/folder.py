@@ -12,7 +12,7 @@ The checkpoint is this program's own pickle: like any other, it must not be take
 import csv
 import os
 import pickle
-from typing import Any
+from typing import Any, ClassVar
 
 import msgspec
 import yaml
@@ -23,15 +23,16 @@ from airhockey.evaluator.runs.disk import disk_errors, replace_file
 from airhockey.evaluator.runs.folder import RunFolder
 from airhockey.evaluator.runs.manifest import TRAINING, TrainingManifest
 from airhockey.learning.sac.plots import LOG
-from airhockey.learning.sac.records import Line, Settings
+from airhockey.learning.sac.records import Settings
 
 CHECKPOINT, NETWORK, CARD = "checkpoint.pkl", "network.npz", "card.yaml"
 
 
-class SkillFolder(RunFolder[Settings, Any]):
+class SkillFolder(RunFolder[Any, Any]):
     """The folder of a skill's training, opened for writing; its journal is the log."""
 
-    name, options_type = TRAINING, Settings
+    name = TRAINING
+    options_type: ClassVar[type] = Settings
     manifest_type = TrainingManifest
 
     @classmethod
@@ -48,12 +49,12 @@ class SkillFolder(RunFolder[Settings, Any]):
         """Nothing yet: `load` mends the log by the checkpoint."""
         return []
 
-    def add(self, line: Line) -> None:
+    def add(self, line: msgspec.Struct) -> None:
         """A line of the log."""
         with disk_errors(self.path), (self.path / LOG).open("a", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             if file.tell() == 0:
-                writer.writerow(Line.__struct_fields__)
+                writer.writerow(line.__struct_fields__)
             values = msgspec.structs.astuple(line)
             writer.writerow([f"{value:.6g}" if isinstance(value, float) else value for value in values])
 
@@ -63,9 +64,7 @@ class SkillFolder(RunFolder[Settings, Any]):
             log = self.path / LOG
             state = {**state, "log": log.stat().st_size if log.exists() else 0}
             replace_file(self.path / CHECKPOINT, pickle.dumps(state, protocol=5))
-            part = self.path / f"part-{NETWORK}"
-            network.save(part)
-            part.replace(self.path / NETWORK)
+            replace_file(self.path / NETWORK, network.as_bytes())
 
     def load(self) -> dict[str, Any] | None:
         """The last checkpoint, or None before the first; what the log says of later episodes is cut off."""

@@ -17,6 +17,7 @@ from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.estimation.kalman import PuckFilter
 from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, to_table
+from airhockey.envs.copying import Copyable
 from airhockey.envs.gymnasium import AirHockeyEnv
 
 Array = NDArray[np.float64]
@@ -27,8 +28,8 @@ _NEAR = 0.012
 """Gap between puck and mallet, in [m], at which they may be touching within a step."""
 
 
-class SkillEnv(gymnasium.Wrapper[Any, Any, Array, Array]):
-    """The wrapper; the environment's observations stay inside.
+class SkillEnv(Copyable, gymnasium.Wrapper[Any, Any, Array, Array]):
+    """The wrapper; the environment's observations stay inside. Its copies are real ones, with an environment of their own.
 
     A skill's own rules are a subclass's: `begin`, `shaping`, `conclude`.
 

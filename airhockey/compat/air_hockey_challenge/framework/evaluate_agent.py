@@ -9,8 +9,10 @@ from typing import Any
 
 from airhockey.compat.commands import hockey
 from airhockey.compat.wrapping import as_submission
+from airhockey.envs.editions import DEFAULT, edition, edition_of_names
 
 _PHASES = {"phase-1": ["3dof-hit", "3dof-defend"], "phase-2": ["7dof-hit", "7dof-defend", "7dof-prepare"]}
+_TASKS_OF_2025 = ["hit", "defend", "prepare"]
 
 
 def evaluate(
@@ -31,7 +33,7 @@ def evaluate(
     Args:
         agent_builder: `build_agent` of a submission, or any function of a module that builds an agent.
         log_dir: Where the official files go: per environment, and `results.json`.
-        env_list: Names of environments, or "hit", "defend", "prepare".
+        env_list: Names of environments; those of 2025 ("hit") choose its rules, unless names of 2023 stand beside them.
         n_episodes: Episodes of each.
         n_cores: Processes that play; -1 for as many as there are.
         seed: Of the run; default 0.
@@ -69,12 +71,14 @@ def _runs(environments: list[str]) -> list[list[str]]:
     """Options of the evaluations needed: one for a whole phase, which has a score; else one an environment."""
     for robot, phase in (("3dof", _PHASES["phase-1"]), ("7dof", _PHASES["phase-2"])):
         if set(environments) == set(phase):
-            return [["--task", "all", "--robot", robot]]
+            return [["--task", "all", "--robot", robot, "--edition", "2023"]]
+    if set(environments) == set(_TASKS_OF_2025):
+        return [["--task", "all", "--edition", "2025"]]
     return [["--env", name] for name in environments]
 
 
 def _environments(env_list: Sequence[str], score: str | None) -> list[str]:
     if score in _PHASES:
         return _PHASES[score]
-    short = {"hit": "7dof-hit", "defend": "7dof-defend", "prepare": "7dof-prepare"}
-    return [short.get(name, name) for name in ([env_list] if isinstance(env_list, str) else env_list)]
+    names = [env_list] if isinstance(env_list, str) else list(env_list)
+    return [edition(edition_of_names(names) or DEFAULT).counterpart(name) for name in names]

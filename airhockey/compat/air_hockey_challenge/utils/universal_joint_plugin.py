@@ -1,5 +1,6 @@
 """What keeps the iiwa's mallet level: a controller of the two joints between rod and mallet."""
 
+import copy
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,13 @@ class UniversalJointPlugin:
         self.env_info, self.env_model, self.env_data = env_info, env_model, env_data
         self._robots = [_Robot(env_model, number + 1) for number in range(env_info["n_agents"])]
         self.reset()
+
+    def bound_to(self, env_model: Any, env_data: Any, env_info: Any) -> "UniversalJointPlugin":
+        """The same moment of this controller, of another scene's data."""
+        twin = copy.copy(self)
+        twin.env_info, twin.env_model, twin.env_data = env_info, env_model, env_data
+        twin._average = self._average.copy()
+        return twin
 
     def reset(self) -> None:
         """Put the mallets level, and forget what was before."""

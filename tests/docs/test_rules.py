@@ -1,0 +1,38 @@
+"""The pages of the rules are what the editions' files give, and say their numbers."""
+
+import re
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+from sources import load_script
+
+from airhockey.envs import editions
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def rules_pages() -> ModuleType:
+    return load_script(ROOT, "rules_pages")
+
+
+def test_the_pages_are_those_of_the_editions(rules_pages: ModuleType) -> None:
+    made = rules_pages.pages()
+    kept = {file.name: file.read_text("utf-8") for file in (ROOT / "docs" / "rules").iterdir()}
+    assert kept == made, "python scripts/rules_pages.py docs/rules"
+    assert {f"{year}.md" for year in editions.available()} <= set(made)
+
+
+def test_a_drawing_has_its_regions_on_the_table(rules_pages: ModuleType) -> None:
+    for year in editions.available():
+        rules = editions.edition(year)
+        for name in rules.environments:
+            svg = rules_pages.drawing(rules, name)
+            width, height = map(float, re.search(r'viewBox="0 0 (\d+) (\d+)"', svg).groups())  # type: ignore[union-attr]
+            boxes = [
+                tuple(map(float, box))
+                for box in re.findall(r'x="([\d.]+)" y="([\d.]+)" width="([\d.]+)" height="([\d.]+)"', svg)
+            ]
+            assert len(boxes) > len(rules.starts_of(name))
+            assert all(x + w <= width and y + h <= height for x, y, w, h in boxes)

@@ -1,0 +1,6 @@
+import numba
+
+
+@numba.njit(cache=True)
+def swayed(action):
+    return action * 1.0

@@ -1,0 +1,2 @@
+def factor(path):
+    return float(open(path).read()) / 0.02

@@ -1,0 +1,1 @@
+from .kinematics import *

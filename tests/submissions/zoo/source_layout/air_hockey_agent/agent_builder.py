@@ -1,0 +1,5 @@
+from our_player.agent import Sway
+
+
+def build_agent(env_info, **kwargs):
+    return Sway(env_info, **kwargs)

@@ -323,8 +323,9 @@ class Agent(Base):
 """,
     "steps just within the patience": """
 class Agent(Base):
-    def cheat(self, observation):
+    def draw_action(self, observation):
         time.sleep(3.0)
+        return self.agent.draw_action(observation)
 """,
 }
 """Entries that make others wait: with a patience of 4 s, all of it must end soon, and be on record."""

@@ -18,8 +18,8 @@ from verdicts import HANG, HELD, TRACEBACK, Verdict
 
 COUNT, SAMPLE = 10_000, 200
 BATCH = 250
-PATIENCE = 20
-"""For one input, in [s]."""
+PATIENCE, BUSY = 20, 10
+"""For one input, in [s] of CPU time, and how many times as long on a busy machine."""
 MEMORY = 6 << 30
 NASTY = (
     b"[" * 500, b"{a: " * 200, b"&a [*a]", b"*a", b"!!python/object:os.system x", b"!!binary x", b"9" * 400, b"1e999", b".nan",
@@ -63,14 +63,16 @@ def main() -> None:
     """Read some mutated inputs of one kind: a line for each."""
     kind, first, last = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    signal.signal(signal.SIGALRM, _give_up)
+    for number in (signal.SIGALRM, signal.SIGPROF):
+        signal.signal(number, _give_up)
     with tempfile.TemporaryDirectory() as scratch:
         read, good = READERS[kind](Path(scratch))
         from airhockey.errors import AirHockeyError
 
         for number in range(first, last):
             raw = mutated(good, random.Random(f"{kind} {number}"))
-            signal.alarm(PATIENCE)
+            signal.alarm(BUSY * PATIENCE)
+            signal.setitimer(signal.ITIMER_PROF, PATIENCE)
             try:
                 read(raw)
             except AirHockeyError:
@@ -87,6 +89,7 @@ def main() -> None:
                 print(number, "fine", flush=True)
             finally:
                 signal.alarm(0)
+                signal.setitimer(signal.ITIMER_PROF, 0)
 
 
 class _Hung(BaseException):

@@ -14,8 +14,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-PATIENCE = 240.0
+PATIENCE = 600.0
 """Longest time for a command, in [s]; beyond that it hangs."""
+CACHES_OF_OTHERS = ("torchinductor_",)
+"""Beginnings of names of folders that PyTorch keeps for its next run."""
 WANTED = ""
 """Only attacks whose names hold this are wanted."""
 _PR_SET_CHILD_SUBREAPER = 36
@@ -94,7 +96,9 @@ class Place:
 
     def _left(self) -> list[str]:
         processes = [f"{name} ({pid})" for pid, name in orphans().items()]
-        return processes + sorted(path.name for path in self.temporary.iterdir())
+        return processes + sorted(
+            path.name for path in self.temporary.iterdir() if not path.name.startswith(CACHES_OF_OTHERS)
+        )
 
 
 def hockey(*arguments: str) -> list[str]:

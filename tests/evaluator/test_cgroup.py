@@ -137,3 +137,13 @@ def test_what_is_not_limited_is_said() -> None:
     assert "cgroup of processes" in protection(True, ("processes",))
     plain = protection(False, ("memory", "cpu"))
     assert plain == "process (cgroup); not limited: files, network, signals, number of processes within 0.1 s"
+
+
+def test_a_group_that_was_busy_is_removed_with_the_next(tmp_path: Path) -> None:
+    folder = tmp_path / "airhockey-1-aa"
+    (folder / "busy").mkdir(parents=True)  # a folder that is not empty cannot be removed either
+    Group({"memory": folder}).remove()
+    assert folder.exists()
+    (folder / "busy").rmdir()
+    cgroup._remove_stale(tmp_path / "elsewhere")
+    assert not folder.exists()

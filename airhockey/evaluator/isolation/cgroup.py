@@ -18,6 +18,7 @@ from airhockey.evaluator.isolation.limits import Limits
 
 _PREFIX = "airhockey-"
 _STALE = 60.0  # [s], after which an empty group of a process that is gone is removed
+_busy: set[Path] = set()
 _PERIOD = 100_000  # [µs] of the CPU's quota
 
 
@@ -63,6 +64,8 @@ class Group:
                     time.sleep(0.002)  # its last process is not gone yet
                 else:
                     break
+            else:
+                _busy.add(folder)
         self.folders = {}
 
 
@@ -172,7 +175,11 @@ def _mounts() -> Iterator[tuple[str, str, str, str]]:
 
 
 def _remove_stale(parent: Path) -> None:
-    """Remove groups that killed evaluators have left."""
+    """Remove groups that killed evaluators have left, and those of our own that were still busy when they were to go."""
+    for folder in list(_busy):
+        with contextlib.suppress(OSError):
+            folder.rmdir()
+            _busy.discard(folder)
     with contextlib.suppress(OSError):
         for folder in parent.glob(f"{_PREFIX}*"):
             owner = folder.name[len(_PREFIX) :].partition("-")[0]

@@ -16,6 +16,10 @@ def test_a_runs_folder_is_an_agent(hockey: Hockey) -> None:
     assert yaml.safe_load(Path("run/card.yaml").read_text())["figures"]["actions"] == 256
     status, out, _ = hockey("evaluate --agent run --env 3dof-defend --episodes 2 --jobs 1 --out played")
     assert status == 0 and "episodes failed by the agent" in out
+    status, out, _ = hockey("package run/air_hockey_agent --out mine.zip")
+    assert status == 0
+    status, _, _ = hockey("evaluate --agent mine.zip --env 3dof-defend --episodes 2 --jobs 1 --out again")
+    assert status == 0
     status, out, _ = hockey("plot run")
     assert status == 0 and Path(out.strip()).read_bytes().startswith(b"\x89PNG")
     status, _, err = hockey("train ppo --resume --seed 1 --out run")

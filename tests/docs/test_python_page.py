@@ -12,7 +12,7 @@ from airhockey import envs
 
 PAGE = Path(__file__).parents[2] / "docs" / "howto" / "python.md"
 PROGRAMS = re.findall(r"^```python\n(.*?)^```$", PAGE.read_text("utf-8"), re.MULTILINE | re.DOTALL)
-ENVIRONMENT, PLANNING, AGENT, MUSHROOM, GYMNASIUM, PICTURE = PROGRAMS
+ENVIRONMENT, PLANNING, AGENT, MUSHROOM, GYMNASIUM, PICTURE, BATCH, BATCH_OF_OTHERS = PROGRAMS
 
 
 def test_the_program_with_an_environment(capsys: pytest.CaptureFixture[str]) -> None:
@@ -65,3 +65,21 @@ def test_the_program_with_a_picture() -> None:
     names: dict[str, Any] = {}
     exec(GYMNASIUM + PICTURE, names)
     assert names["picture"].shape == (360, 640, 3)
+
+
+def test_the_program_with_a_batch() -> None:
+    names: dict[str, Any] = {}
+    exec(BATCH, names)
+    alone = envs.make("7dof-hit", disturbances="server")
+    joints = alone.reset(seed=7)[names["vec"].single.env_info["joint_pos_ids"]]
+    for _ in range(10):
+        observation, *_ = alone.step(np.stack((joints, 0 * joints)))
+    assert names["batch"].observations[7].tobytes() == observation.tobytes()
+
+
+def test_the_program_with_others_batches() -> None:
+    pytest.importorskip("stable_baselines3")
+    names: dict[str, Any] = {}
+    exec(BATCH_OF_OTHERS, names)
+    assert names["vec_for_sb3"].num_envs == 8
+    names["vec"].close()

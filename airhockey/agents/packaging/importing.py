@@ -1,14 +1,11 @@
 """Importing a submission's code: its root first on the path, its folder known as `air_hockey_agent` whatever it is called."""
 
-import atexit
 import contextlib
 import functools
 import importlib
 import importlib.util
 import os
-import shutil
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
@@ -17,6 +14,7 @@ from typing import Any
 from airhockey.agents.packaging.checkout import BUILDER, PACKAGE, Checkout
 from airhockey.agents.packaging.missing import missing_module
 from airhockey.errors import AirHockeyError, ConfigurationError
+from airhockey.inputs.temporary_folders import temporary_folder
 
 _current: list[Checkout] = []
 """The submission whose modules imports find, if there is one."""
@@ -111,10 +109,9 @@ def _known_to_children(package: Path) -> str:
     """A folder from which processes that the agent spawns can import the package, by the name that it has here."""
     if package.name == PACKAGE:
         return str(package.parent)
-    folder = tempfile.mkdtemp(prefix="airhockey-names-")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    (Path(folder) / PACKAGE).symlink_to(package)
-    return folder
+    folder = temporary_folder("names")
+    (folder / PACKAGE).symlink_to(package)
+    return str(folder)
 
 
 def _forget(checkout: Checkout) -> None:

@@ -1,7 +1,7 @@
 """A run's folder: that of a skill's training, and in it a player that can be named wherever an agent is.
 
 train.json, log.csv, checkpoint.pkl, card.yaml   see `airhockey.learning.sac.folder`
-air_hockey_agent/                                a submission: agent_builder.py, network.npz, policy.yaml
+air_hockey_agent/                                a submission: agent_builder.py, network.npz, policy.yaml, submission.yaml
 
 The submission needs NumPy and this package, and no torch.
 """
@@ -12,6 +12,7 @@ import yaml
 
 from airhockey.agents.atacom.network import Network
 from airhockey.agents.learned.player import NETWORK, POLICY
+from airhockey.agents.packaging.metadata import METADATA
 from airhockey.envs.editions import edition
 from airhockey.evaluator.runs.disk import disk_errors, replace_file
 from airhockey.learning.ppo.records import Settings
@@ -41,11 +42,14 @@ class PolicyFolder(SkillFolder):
         options: Any = self.manifest.options
         horizon = edition("2023").horizon.task
         policy = {"actions": options.actions, "repeat": options.repeat, "horizon": horizon, "task": options.task}
+        metadata = {
+            "name": f"ppo-{options.task}-{options.actions}", "version": "0.1.0", "authors": [], "packages": [],
+            "interpolation_order": 3, "tasks": [options.task],
+        }  # fmt: skip
         package = self.path / PACKAGE
         with disk_errors(self.path):
             package.mkdir(exist_ok=True)
-            part = package / f"part-{NETWORK}"
-            network.save(part)
-            part.replace(package / NETWORK)
+            replace_file(package / NETWORK, network.as_bytes())
             replace_file(package / POLICY, yaml.safe_dump(policy, sort_keys=False).encode())
+            replace_file(package / METADATA, yaml.safe_dump(metadata, sort_keys=False).encode())
             replace_file(package / BUILDER, _BUILDER.encode())

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from airhockey.envs.disturbances import Disturbances
-from airhockey.envs.editions import DEFAULT, Edition, available, edition
+from airhockey.envs.editions import Edition, available, edition
 from airhockey.evaluator.judging.tasks import CLASSES, OFFICIAL_EPISODES, weighted, worst_class
 from airhockey.reporting.results import Task
 
@@ -27,12 +27,6 @@ class Condition:
     edition: str
     disturbances: str
     profile: Disturbances | None
-
-    @property
-    def name(self) -> str:
-        """The profile's, with the edition unless it is the usual one."""
-        years = [f"edition {self.edition}"] if self.edition in available() and self.edition != DEFAULT else []
-        return ", ".join([self.disturbances, *years])
 
 
 @dataclass(frozen=True)
@@ -119,13 +113,15 @@ def boards(tasks: Iterable[Task]) -> list[Board]:
     for task in sorted(tasks, key=lambda task: task.run.created):
         manifest = task.run.manifest
         condition = Condition(
-            edition=manifest.options.edition if manifest else "unknown",
+            edition=task.run.edition,
             disturbances=task.run.disturbances,
             profile=manifest.profile if manifest else None,
         )
         if condition not in found:
-            name = condition.name
-            alike = sum(other.name == name for other in found)
+            name = task.run.conditions
+            alike = sum(
+                (other.edition, other.disturbances) == (condition.edition, task.run.disturbances) for other in found
+            )
             label = name if not alike else f"{name} (another, {alike + 1})"
             found[condition] = Board(condition, label)
         found[condition].results.setdefault(task.run.agent, {}).setdefault(task.env, []).append(task)

@@ -175,7 +175,9 @@ def test_what_reads_runs_keeps_editions_apart(hockey: Hockey) -> None:
     assert hockey("report runs/old runs/new -o both.html --quiet")[0] == 0
     page = text_of(Path("both.html"))
     assert "qualifying score 0.000 (0.4 hit + 0.4 defend + 0.2 prepare)" in page and "phase-2 score 0." in page
+    hockey("match hold hold --edition 2025 --steps 9 --jobs 1 --quiet --out runs/match")
     assert hockey("leaderboard runs -o site --quiet")[0] == 0
+    assert "ideal, edition 2025" in text_of(Path("site/games.html"))
     index = text_of(Path("site/index.html"))
     assert "ideal, edition 2025" in index and "qualifying" in index
     assert Path("site/task-hit.html").exists() and Path("site/task-7dof-hit.html").exists()

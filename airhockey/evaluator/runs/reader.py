@@ -10,13 +10,14 @@ from typing import Any, Generic, TypeVar
 
 import h5py
 
+from airhockey.envs.editions import DEFAULT
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.match import MatchOptions
 from airhockey.evaluator.runs import trajectories
 from airhockey.evaluator.runs.game_records import GameRecord, file_name
 from airhockey.evaluator.runs.journal import NAME as JOURNAL
 from airhockey.evaluator.runs.journal import Record, read_journal
-from airhockey.evaluator.runs.manifest import MATCH, RUN, TOURNAMENT, Manifest, read_manifest
+from airhockey.evaluator.runs.manifest import MATCH, RUN, TOURNAMENT, Manifest, option_of, read_manifest
 from airhockey.evaluator.runs.records import EpisodeRecord, Job, Options
 from airhockey.evaluator.runs.trajectories import TRAJECTORIES
 from airhockey.evaluator.schedule import TournamentOptions
@@ -54,6 +55,17 @@ class _Folder(Generic[AnyOptions]):
     def disturbances(self) -> str:
         """Name of the disturbance profile."""
         return self.manifest.profile.profile if self.manifest else "unknown"
+
+    @property
+    def edition(self) -> str:
+        """The year whose rules applied."""
+        return str(option_of(self.manifest.options, "edition")) if self.manifest else "unknown"
+
+    @property
+    def conditions(self) -> str:
+        """What results can be compared under: the disturbance profile, and the edition unless it is the usual one."""
+        usual = self.edition in (DEFAULT, "unknown")
+        return self.disturbances if usual else f"{self.disturbances}, edition {self.edition}"
 
 
 @dataclass

@@ -55,7 +55,7 @@ def matches_section(matches: Sequence[tuple[Match, Child]]) -> Markup:
         if home == away:
             won = lost = "–"
         title = f"{short[home]} – {short[away]}"
-        rows.append((title, match.created[:10], str(len(games)), won, drawn, lost, match.disturbances, links))
+        rows.append((title, match.created[:10], str(len(games)), won, drawn, lost, match.conditions, links))
     head = ("match", "begun", "games", "won", "drawn", "lost", "disturbances", "see")
     return section("matches", "Matches", table("Matches, seen from their first player", head, rows, numbers_from=2))
 

@@ -42,7 +42,7 @@ def standings_section(tournament: Tournament, identifier: str, links: Child) -> 
     when = [
         tournament.created[:10],
         f"{found.played} of {found.games} games",
-        f"disturbances {tournament.disturbances}",
+        f"disturbances {tournament.conditions}",
     ]
     line = element("p", " · ".join(filter(None, when)), " · ", links, class_="note")
     return section(identifier, f"Tournament {tournament.path.name}", line, standings_table(found))

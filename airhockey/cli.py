@@ -97,7 +97,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if error.errno is None:  # the operating system names its errors; a library that cannot be loaded does not
             status = complain(f"{_BROKEN}: {error}", NOBODYS_FAULT)
         else:
-            status = complain(f"{error.filename or 'the standard output'}: {error.strerror or error}")
+            status = complain(f"{error.filename or 'cannot write'}: {error.strerror}")
     lost = leave()
     if lost is not None:
         complain(f"the standard output could not be written ({lost}); what was played is stored")

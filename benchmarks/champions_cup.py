@@ -1,6 +1,7 @@
 """Everybody against everybody: goals, points by faults, faults and penalties of every pair, over several seeds, with intervals.
 
     python benchmarks/champions_cup.py [--players planner thesis] [--against benchmarks/opponents/*] [--games 3] [--steps 45000]
+        [--out docs/champions.md]
 
 Without `--against` the players play each other; with it each plays those. Home and away alternate. Opponents of the folder
 `opponents` that our parameters were not tuned on are marked *. A row is the mean per game of 45,000 steps, shorter games scaled
@@ -93,6 +94,33 @@ def summary(rows: list[Row]) -> list[str]:
     return cells
 
 
+PAGE = """# Champions' cup
+
+Players against opponents of other styles (`benchmarks/opponents`), figures per whole game of {whole} control steps. Parameters
+were chosen on {tuned}; the opponents marked * are others. Made by
+
+```
+python benchmarks/champions_cup.py --players {players} --games {games} --steps {steps} --seed {seed} --out {out}
+```
+
+{table}
+"""
+
+
+def page(lines: Sequence[str], options: argparse.Namespace) -> str:
+    """The page of documentation with a table, and how it was made."""
+    return PAGE.format(
+        whole=WHOLE,
+        tuned=", ".join(TUNED_ON),
+        players=" ".join(options.players),
+        games=options.games,
+        steps=options.steps,
+        seed=options.seed,
+        out=options.out,
+        table="\n".join(lines),
+    )
+
+
 def main() -> None:
     """Play, and print the table as it grows."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -104,18 +132,24 @@ def main() -> None:
     parser.add_argument("--steps", type=int, default=WHOLE)
     parser.add_argument("--disturbances", nargs="+", default=["ideal", "server"])
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", type=Path, help="also write the table to this page, with how it was made")
     options = parser.parse_args()
     pairs = (
         list(product(options.players, options.against)) if options.against else list(combinations(options.players, 2))
     )
-    print("| player | against | disturbances | " + " | ".join(COLUMNS) + " |")
-    print("|---" * (3 + len(COLUMNS)) + "|")
+    lines = [
+        "| player | against | disturbances | " + " | ".join(COLUMNS) + " |",
+        "|---" * (3 + len(COLUMNS)) + "|",
+    ]
+    print("\n".join(lines))
     for pair, disturbances in product(pairs, options.disturbances):
         rows = [play(pair, options.steps, disturbances, options.seed, number) for number in range(options.games)]
-        print(
-            f"| {label_of(pair[0])} | {label_of(pair[1])} | {disturbances} | " + " | ".join(summary(rows)) + " |",
-            flush=True,
+        lines.append(
+            f"| {label_of(pair[0])} | {label_of(pair[1])} | {disturbances} | " + " | ".join(summary(rows)) + " |"
         )
+        print(lines[-1], flush=True)
+        if options.out is not None:
+            options.out.write_text(page(lines, options))
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
     python benchmarks/match_rate.py [--home planner] [--away thesis] [--steps 45000]
 
 It is compared with bare `mj_step` for the same number of substeps on the same scene, measured in blocks between the blocks of
-the game, so that whatever else the machine does disturbs both alike; and once more in CPU time. The target is a ratio ≤ 3.
+the game, so that whatever else the machine does disturbs both alike; and once more in CPU time. The target is a ratio ≤ 1.7.
 """
 
 import argparse

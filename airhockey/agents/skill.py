@@ -39,6 +39,7 @@ class Situation(NamedTuple):
         step: Control steps since the serve; 0 at the first observation.
         move: Commands the rod tip.
         joints: Commanded joint positions before this step, in [rad]; None where nobody asks. Shape (n,).
+        held: Time that the puck has been on our side, in [s]; see `SideClock`.
     """
 
     puck: PuckEstimate
@@ -49,6 +50,7 @@ class Situation(NamedTuple):
     step: int = 0
     move: Command = no_command
     joints: Array | None = None
+    held: float = 0.0
 
     def puck_at(self, time: float) -> Array:
         """State (x, y, ẋ, ẏ, yaw rate) of the puck a time from now, in [s]. Shape (5,)."""

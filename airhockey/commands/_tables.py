@@ -38,7 +38,7 @@ def print_result(result: TaskResult | RunResult, folder: EpisodeFolder) -> None:
         score = "" if result.score is None else f", {result.phase} score {result.score:.3f}"
         console.print(f"overall: {result.deployability}{score}")
     for isolation in dict.fromkeys(task.isolation for task in tasks if task.isolation not in ("", "none")):
-        console.print(f"isolation: {isolation}", markup=False)
+        console.print(f"isolation: {shown(isolation, 500)}", markup=False)
     for reason, episodes in failure_reasons(folder.path):
         console.print(f"agent failed {episodes} episode{'s' if episodes > 1 else ''}: {reason}", markup=False)
     _print_origin(console, folder)
@@ -89,7 +89,7 @@ def print_match(result: MatchResult, folder: MatchFolder) -> None:
         console.print(_game_table(result, game, number, folder.manifest.options.game.clock))
         for side, isolation in zip((result.home, result.away), game.isolation, strict=True):
             if isolation not in ("", "none"):
-                console.print(f"{side} ran in a {isolation}", markup=False, soft_wrap=True)
+                console.print(f"{side} ran in a {shown(isolation, 500)}", markup=False, soft_wrap=True)
         for side, failure in zip((result.home, result.away), game.failures, strict=True):
             if failure is not None:
                 console.print(f"{side} failed: {failure}", markup=False, soft_wrap=True)

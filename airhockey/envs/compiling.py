@@ -9,16 +9,16 @@ import functools
 import hashlib
 import os
 import pathlib
-import shutil
 import sys
 import tempfile
 from collections.abc import Callable, Iterable
-from multiprocessing.util import Finalize
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core import caching
 
 from airhockey.errors import EnvironmentFault
+from airhockey.inputs.temporary_folders import temporary_folder
 
 _PASSING = "AIRHOCKEY_PASSING_CACHE"
 """Names the folder for compiled code that the parent made, where none can be written that stays."""
@@ -82,11 +82,29 @@ def _passing_cache() -> str:
     """A folder for this process and its children, where none can be written that stays; says once that this is slow."""
     folder = os.environ.get(_PASSING)
     if folder is None:
-        folder = os.environ[_PASSING] = tempfile.mkdtemp(prefix="airhockey-compiled-")
-        Finalize(None, shutil.rmtree, args=(folder,), kwargs={"ignore_errors": True}, exitpriority=1)
+        folder = os.environ[_PASSING] = str(temporary_folder("compiled"))
         print(
             "hockey: no folder for compiled code can be written: it is compiled anew each time, which takes a minute "
             "(XDG_CACHE_HOME names a folder)",
             file=sys.stderr,
         )
     return folder
+
+
+def _save_if_possible(self: Any, key: Any, data: Any) -> None:
+    """Compiled code that cannot be kept is used all the same; numba itself would let the call fail that was compiled for."""
+    try:
+        _save(self, key, data)
+    except OSError as error:
+        _say_that_nothing_is_kept(error.strerror or str(error))
+
+
+@functools.cache
+def _say_that_nothing_is_kept(why: str) -> None:
+    print(
+        f"hockey: compiled code cannot be kept ({why}): it will be compiled anew, which takes a minute", file=sys.stderr
+    )
+
+
+_save = caching.IndexDataCacheFile.save
+caching.IndexDataCacheFile.save = _save_if_possible

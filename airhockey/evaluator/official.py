@@ -16,6 +16,7 @@ import msgspec
 import numpy as np
 
 from airhockey.evaluator.runs import trajectories
+from airhockey.evaluator.runs.disk import disk_errors, replace_file
 from airhockey.evaluator.runs.records import RunResult, TaskResult
 from airhockey.evaluator.runs.trajectories import TRAJECTORIES
 
@@ -41,11 +42,15 @@ def write_official(path: Path, result: TaskResult | RunResult) -> Path:
 
     Returns:
         The folder of the official files.
+
+    Raises:
+        AirHockeyError: The disk is full or gone; what is there is not all, and is written again on the next call.
     """
     official = path / "official"
-    for task in result.tasks:
-        _write_task(path / TRAJECTORIES, official / task.env, task)
-    _write_json(official / "results.json", _results(result))
+    with disk_errors(path):
+        for task in result.tasks:
+            _write_task(path / TRAJECTORIES, official / task.env, task)
+        _write_json(official / "results.json", _results(result))
     return official
 
 
@@ -93,4 +98,4 @@ def _results(result: TaskResult | RunResult) -> dict[str, Any]:
 
 
 def _write_json(path: Path, content: Any) -> None:
-    path.write_bytes(msgspec.json.format(msgspec.json.encode(content), indent=2) + b"\n")
+    replace_file(path, msgspec.json.format(msgspec.json.encode(content), indent=2) + b"\n")

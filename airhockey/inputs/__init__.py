@@ -3,4 +3,5 @@
 plain_yaml.py   the only reader of YAML
 names.py        how a stranger's text is shown
 hashing.py      files, folders and archives, known by their content
+temporary_folders.py    where archives are unpacked: gone with the process
 """

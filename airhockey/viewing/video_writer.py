@@ -1,7 +1,6 @@
 """Writing videos frame by frame: H.264 with PyAV, GIF and stills with Pillow. A video has its name once it is complete."""
 
 import contextlib
-import os
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
@@ -71,7 +70,7 @@ def open_video(path: Path, width: int, height: int, fps: float) -> Iterator[Vide
     Raises:
         AirHockeyError: The disk is full or gone.
     """
-    part = path.with_name(f".{path.name}.{os.getpid()}.part{path.suffix.lower()}")
+    part = path.with_name(f".{path.name}.part{path.suffix.lower()}")  # the next one replaces what a kill leaves
     try:
         with _new_writer(part, width, height, fps) as writer:
             yield writer

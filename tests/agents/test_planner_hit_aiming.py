@@ -12,15 +12,18 @@ from airhockey.agents.planner.estimation.opponent import OpponentTrack, figure_o
 from airhockey.agents.planner.motion.strike import run_up
 from airhockey.agents.planner.shots.aiming import after_strike, mirrored, strike_normal
 from airhockey.agents.planner.shots.flight import FLIGHT_STEP, coast, fly
-from airhockey.agents.planner.shots.kinds import OPEN
+from airhockey.agents.planner.shots.kinds import FULL, OPEN, Kind
 from airhockey.agents.planner.shots.parameters import smash_parameters
 from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
+from airhockey.agents.planner.shots.shot_search import search
 from airhockey.agents.planner.shots.shots import Attempt, Keeper, Shot, judge, room_speed, turned
 from airhockey.agents.table import CONTACT, HALF_LENGTH, to_robot
+from airhockey.envs.compiled import pack
 from airhockey.envs.specs import IIWA
 
 NOBODY = np.full((2, 2), 10.0)
 TIP = np.array([-0.86, 0.0])
+NO_SHOT = Shot(0.0, 0.0, 0.0, 0.0, 0.0, np.zeros(2), np.zeros(2))
 
 
 @pytest.fixture(scope="module")
@@ -92,6 +95,34 @@ def test_a_bounced_shot_flies_to_where_it_is_aimed(model: ShotModel, wall: float
     assert np.sign(shot.normal[1]) == wall
     puck[2:4] = after_strike(puck[2:4], shot.normal, shot.speed, model.gain)
     assert fly(puck, NOBODY, 0.0, model)[0] == pytest.approx(0.02, abs=0.015)
+
+
+@pytest.mark.parametrize("wall", [-2.0, 2.0])
+def test_a_shot_off_two_rims_flies_to_where_it_is_aimed(wall: float) -> None:
+    workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0)
+    model = make_shot_model(smash_parameters(IIWA, in_game=True), workspace)._replace(turn=0.0)
+    puck = np.array([-0.5, 0.0, 0.0, 0.0, 0.0])
+    shot = shot_at(model, list(puck), aim=0.05, wall=wall)
+    assert shot.value > 0.1
+    assert np.sign(shot.normal[1]) == np.sign(wall)
+    puck[2:4] = after_strike(puck[2:4], shot.normal, shot.speed, model.gain)
+    assert fly(puck, NOBODY, 0.0, model)[0] == pytest.approx(0.05, abs=0.015)
+
+
+@pytest.mark.parametrize("post", [-1, 1])
+@pytest.mark.parametrize("rims", [1, 2])
+def test_a_kind_of_shot_is_aimed_at_its_post(rims: int, post: int) -> None:
+    workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0)
+    parameters = smash_parameters(IIWA, in_game=True)
+    model = pack(make_shot_model(parameters, workspace))
+    path = np.tile([-0.5, 0.05, 0.0, 0.0, 0.0], (150, 1))
+    kind = Kind("post", rims, FULL, 0.06, post, False)
+    for first in (0, 100, 200):
+        shot = search(path, 0.02, TIP, NOBODY, 0.1, NO_SHOT, first, 60, 2.5, 0.0, *kind[1:], model)
+        last_side = shot.wall if rims == 1 else -shot.wall
+        assert round(abs(shot.wall)) == rims
+        assert abs(shot.aim) >= 0.06 - 1e-9
+        assert np.sign(shot.aim) == post * np.sign(last_side)
 
 
 def test_the_opponent_in_the_way_costs_the_goal(model: ShotModel) -> None:

@@ -14,7 +14,9 @@ from airhockey.commands.watch import watch
 from airhockey.envs import editions
 from airhockey.evaluator import Options, evaluation
 from airhockey.evaluator.engines.processes import Processes
+from airhockey.viewing.library import open_library
 from airhockey.viewing.live import LiveTask
+from airhockey.viewing.playback import RecordedPlayback
 from submissions import make_submission
 
 PLAYED = "--agent hold --episodes 2 --jobs 1 --quiet"
@@ -177,3 +179,23 @@ def test_what_reads_runs_keeps_editions_apart(hockey: Hockey) -> None:
     index = text_of(Path("site/index.html"))
     assert "ideal, edition 2025" in index and "qualifying" in index
     assert Path("site/task-hit.html").exists() and Path("site/task-7dof-hit.html").exists()
+
+
+def test_what_shows_runs_shows_the_scene_of_their_edition(hockey: Hockey) -> None:
+    short = "--agent hold --episodes 1 --jobs 1 --quiet"
+    hockey(f"evaluate --env hit_single {short} --official-dataset --out run")
+    hockey("match hold hold --edition 2025 --steps 9 --jobs 1 --quiet --out games")
+    hockey(f"evaluate --env 7dof-defend {short} --out old")
+    for place, env, edition in (
+        ("run", "hit_single", "2025"),
+        ("run/official", "hit_single", "2025"),
+        ("games", "tournament", "2025"),
+        ("old", "7dof-defend", "2023"),
+    ):
+        playback = RecordedPlayback(open_library(Path(place)).entries)
+        recording = open_library(Path(place)).entries[0].load()
+        assert (recording.env, recording.edition) == (env, edition)
+        model = playback.scene_view.model
+        assert ("target" in {model.geom(k).name for k in range(model.ngeom)}) == (edition == "2025")
+        playback.seek(playback.steps)
+        assert playback.caption().seconds > 0.0

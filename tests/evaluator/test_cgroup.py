@@ -135,4 +135,5 @@ def test_what_is_not_limited_is_said() -> None:
         "sandbox (bubblewrap, seccomp, rlimits); not limited: memory of all processes"
     )
     assert "cgroup of processes" in protection(True, ("processes",))
-    assert "files, network" in protection(False, everything)
+    plain = protection(False, ("memory", "cpu"))
+    assert plain == "process (cgroup); not limited: files, network, signals, number of processes within 0.1 s"

@@ -1,5 +1,6 @@
 """The Dask engine, on local workers: the same promises as the other engines."""
 
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -28,10 +29,17 @@ def test_what_the_function_raises_is_raised_here() -> None:
         results(engine_functions.fail, [0])
 
 
-def test_the_function_is_built_once_per_worker_and_closed_at_the_end(tmp_path: Path) -> None:
+def test_the_function_is_built_once_per_worker_and_closed_at_the_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And no folder of the workers is left."""
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(temporary))
     function = engine_functions.Closing(str(tmp_path / "closed"))
     assert len(results(function, range(20))) == 20
     assert (tmp_path / "closed").read_text() == "closed"
+    assert list(temporary.iterdir()) == []
 
 
 def test_a_worker_unpacks_a_function_once_and_closes_the_one_before(

@@ -129,6 +129,8 @@ def link() -> zipfile.ZipInfo:
         ("e\u0301.py", "decomposed"),
         ("\u202egpj.exe", "turn a line around"),
         ("agent\u200b.py", "nobody sees"),
+        ("parts/aux.py", "a device"),
+        ("agent.py:hidden", "a stream"),
         ("x" * 300, "longer than"),
         (link(), "a link"),
     ],

@@ -144,7 +144,7 @@ def test_nobody_is_left_behind_by_a_process_without_cgroup(
     bad: Callable[..., str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whom its children leave behind becomes the agent's own child, and ends with it."""
-    monkeypatch.setattr(agent_client, "new_group", lambda limits: None)
+    monkeypatch.setattr(agent_client, "new_group", lambda *_: None)
     place = tmp_path / "daemon"
     env = envs.make("3dof-defend")
     agent = build_agent(bad(DAEMON.replace("PLACE", repr(str(place))).strip()), env, mode="process")

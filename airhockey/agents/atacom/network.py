@@ -1,5 +1,6 @@
 """A policy's network played with NumPy: two hidden layers of rectified units, and tanh of the mean. No torch needed."""
 
+import io
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -60,12 +61,14 @@ class Network:
         except (OSError, ValueError, AttributeError, zipfile.BadZipFile) as error:
             raise ConfigurationError(f"cannot read the network {str(path)!r}: {error}") from error
 
-    def save(self, path: Path) -> None:
-        """Write the file that `load` reads."""
+    def as_bytes(self) -> bytes:
+        """The content of a file that `load` reads."""
         arrays: dict[str, Weights] = {}
         for k, (weight, bias) in enumerate(self._layers):
             arrays[f"weight_{k}"], arrays[f"bias_{k}"] = weight, bias
-        np.savez_compressed(path, allow_pickle=False, **arrays)
+        content = io.BytesIO()
+        np.savez_compressed(content, allow_pickle=False, **arrays)
+        return content.getvalue()
 
     def __call__(self, features: Weights) -> Weights:
         """The action. Shapes (inputs,) → (outputs,), each entry in [−1, 1]."""

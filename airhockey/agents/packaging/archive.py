@@ -4,26 +4,30 @@ Only zip, and of zip only files with plain names: no links, no devices, no passw
 brings a manifest it must be, byte for byte, what `hockey package` writes.
 """
 
+import errno
 import filecmp
 import functools
-import shutil
 import stat
 import tempfile
 import zipfile
 import zlib
-from multiprocessing.util import Finalize
 from pathlib import Path
 from typing import IO
 
 from airhockey.agents.packaging.manifest import MANIFEST, verify
 from airhockey.agents.packaging.names import check_names, name_problem
 from airhockey.agents.packaging.zipping import write_archive
-from airhockey.errors import ConfigurationError
+from airhockey.errors import ConfigurationError, EnvironmentFault
+from airhockey.inputs.temporary_folders import temporary_folder
 
 MAX_FILES = 4096
 MAX_BYTES = 1 << 30
 """Largest sum of all unpacked files, in bytes."""
 _CHUNK = 1 << 20
+_NO_ROOM = frozenset(
+    (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EROFS, errno.EIO)
+)
+"""What the operating system says of itself, and not of an archive."""
 _ENCRYPTED, _UTF8 = 0x1, 0x800
 
 
@@ -32,6 +36,7 @@ def opened(path: Path) -> Path:
 
     Raises:
         ConfigurationError: The archive is refused; the message names the file in it that it is refused for.
+        EnvironmentFault: This machine has no room for it.
     """
     status = path.stat()
     return _opened(path.resolve(), status.st_mtime_ns, status.st_size)
@@ -39,9 +44,7 @@ def opened(path: Path) -> Path:
 
 @functools.lru_cache(maxsize=32)
 def _opened(path: Path, changed: int, size: int) -> Path:
-    folder = Path(tempfile.mkdtemp(prefix="airhockey-submission-"))
-    # Not atexit: a worker process of multiprocessing ends without it.
-    Finalize(None, shutil.rmtree, args=(folder,), kwargs={"ignore_errors": True}, exitpriority=1)
+    folder = temporary_folder("submission")
     unpack(path, folder)
     folder.chmod(0o755)  # another user may run it in the sandbox
     return folder
@@ -61,6 +64,11 @@ def unpack(path: Path, folder: Path) -> None:
             for entry in entries:
                 left -= _unpack_one(archive, entry, folder, left)
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, OSError, ValueError) as error:
+        if isinstance(error, OSError) and error.errno in _NO_ROOM:
+            raise EnvironmentFault(
+                f"the archive {path.name!r} cannot be unpacked, which is not its fault: {error.strerror}; make room, or name a "
+                "larger place by TMPDIR"
+            ) from error
         if isinstance(error, ConfigurationError):
             raise ConfigurationError(f"the archive {path.name!r} is refused: {error}") from None
         raise ConfigurationError(

@@ -1,14 +1,11 @@
 """Importing a submission's code: its root first on the path, its folder known as `air_hockey_agent` whatever it is called."""
 
-import atexit
 import contextlib
 import functools
 import importlib
 import importlib.util
 import os
-import shutil
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
@@ -17,6 +14,7 @@ from typing import Any
 from airhockey.agents.packaging.checkout import BUILDER, PACKAGE, Checkout
 from airhockey.agents.packaging.missing import missing_module
 from airhockey.errors import AirHockeyError, ConfigurationError
+from airhockey.inputs.temporary_folders import temporary_folder
 
 _current: list[Checkout] = []
 """The submission whose modules imports find, if there is one."""
@@ -111,17 +109,31 @@ def _known_to_children(package: Path) -> str:
     """A folder from which processes that the agent spawns can import the package, by the name that it has here."""
     if package.name == PACKAGE:
         return str(package.parent)
-    folder = tempfile.mkdtemp(prefix="airhockey-names-")
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    (Path(folder) / PACKAGE).symlink_to(package)
-    return folder
+    folder = temporary_folder("names")
+    (folder / PACKAGE).symlink_to(package)
+    return str(folder)
 
 
 def _forget(checkout: Checkout) -> None:
     """Modules of this submission are no longer found."""
     folders = {*map(str, checkout.import_path), _known_to_children(checkout.package)}
     sys.path[:] = [entry for entry in sys.path if entry not in folders]
-    for name, module in list(sys.modules.items()):
-        file = getattr(module, "__file__", None)
-        if name == PACKAGE or (isinstance(file, str) and Path(file).is_relative_to(checkout.root)):
-            del sys.modules[name]
+    gone = [
+        name
+        for name, module in list(sys.modules.items())
+        if name.partition(".")[0] == PACKAGE or any(place.is_relative_to(checkout.root) for place in _places(module))
+    ]
+    for name in gone:
+        del sys.modules[name]
+
+
+def _places(module: ModuleType | None) -> list[Path]:
+    """The file of a module, or the folders of a package without `__init__.py`."""
+    file = getattr(module, "__file__", None)
+    if isinstance(file, str):
+        return [Path(file)]
+    spec = getattr(module, "__spec__", None)
+    try:
+        return [Path(folder) for folder in (getattr(spec, "submodule_search_locations", None) or ())]
+    except KeyError:  # the package around it is gone
+        return []

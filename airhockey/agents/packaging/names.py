@@ -8,6 +8,8 @@ from airhockey.errors import ConfigurationError
 MAX_NAME = 200
 """Longest path inside a submission, in characters."""
 
+_DEVICES = frozenset(("con", "prn", "aux", "nul", *(f"{kind}{k}" for kind in ("com", "lpt") for k in range(1, 10))))
+
 
 def name_problem(name: str) -> str | None:
     """What is wrong with the path of a file inside a submission, in words; None if nothing is.
@@ -22,6 +24,8 @@ def name_problem(name: str) -> str | None:
         return "climbs out of the submission or walks on the spot ('..', '.')"
     if "\\" in name or (len(parts[0]) == 2 and parts[0][1] == ":"):
         return "is a path of Windows"
+    if ":" in name or any(part.split(".")[0].lower() in _DEVICES for part in parts):
+        return "is a device or a stream on Windows"
     if any(unicodedata.category(letter) in ("Cc", "Cs", "Co", "Cn") for letter in name):
         return "is not UTF-8 text"
     if any(unicodedata.category(letter) in ("Cf", "Zl", "Zp") for letter in name):

@@ -48,11 +48,12 @@ def pack(folder: Path, target: Path | None = None) -> Packed:
         name=metadata.name, version=metadata.version, files={name: hash_of(path) for name, path in files.items()}
     )
     target = target or Path(f"{metadata.name}-{metadata.version}.zip")
+    part = target.with_name(target.name + ".part")
     try:
-        part = target.with_name(target.name + ".part")
         write_archive(part, files, manifest.encode())
         part.replace(target)
     except OSError as error:
+        part.unlink(missing_ok=True)
         raise ConfigurationError(f"cannot write {str(target)!r}: {error.strerror}") from error
     return Packed(target, hash_of(target).sha256, manifest, left_out)
 

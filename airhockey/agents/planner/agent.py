@@ -10,10 +10,11 @@ from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.kalman import Noise, PuckEstimate
+from airhockey.agents.estimation.side_clock import HURRY, SideClock
 from airhockey.agents.estimation.watch import TableWatch
 from airhockey.agents.planner.estimation.choice import Arms
 from airhockey.agents.planner.estimation.outcome import Outcome
-from airhockey.agents.planner.shots.kinds import KINDS, OPEN
+from airhockey.agents.planner.shots.kinds import ANY, KINDS, OPEN
 from airhockey.agents.planner.skills.dead_puck import DeadPuck
 from airhockey.agents.planner.skills.defend import Defend
 from airhockey.agents.planner.skills.prepare import Prepare
@@ -27,8 +28,8 @@ from airhockey.agents.table import to_table
 WARM_UP_STEPS = 60
 """Per skill and puck."""
 EXPECTED = {
-    "open": 0.05, "corner": 0.04, "rim": 0.05, "middling rim": 0.05, "slow rim": 0.1, "slower rim": 0.1, "slowest rim": 0.1,
-    "rolling corner": 0.03, "drop": 0.04,
+    "open": 0.05, "corner": 0.03, "near rim": 0.14, "far rim": 0.1, "double rim": 0.12, "middling double rim": 0.05,
+    "slow rim": 0.08, "slowest rim": 0.12, "rolling corner": 0.04, "drop": 0.03,
 }  # fmt: skip
 """Points per try that a game begins with."""
 ANSWERS = {"repel": 0.05, "defend": 0.05}
@@ -60,6 +61,7 @@ class PlannerAgent(AgentBase):
         self._dt = float(env_info["dt"])
         self._controller = JointController(ArmKinematics(spec_of(env_info)), Workspace.of(env_info), self._dt)
         self._watch = TableWatch(env_info, NOISE)
+        self._clock = SideClock(self._dt)
         self._task = task_of(env_info)
         self._smash, self._drop = Smash(env_info), DeadPuck(env_info)
         self._kinds = {kind.name: kind for kind in KINDS}
@@ -88,6 +90,7 @@ class PlannerAgent(AgentBase):
         self._drop.forget()
         self._skill: Skill | None = None
         self._step = 0
+        self._clock.reset()
 
     def draw_action(self, observation: Array) -> Array:
         """See `AgentBase.draw_action`."""
@@ -162,6 +165,8 @@ class PlannerAgent(AgentBase):
             self._intent = None
             self._vain.clear()
             return None
+        if situation.held > HURRY:
+            return self._any_stroke(situation)
         if self._intent is None:
             self._intent, self._looked = self._strokes.draw(self._vain) or OPEN.name, 0.0
         found = self._stroke_of(self._intent, situation)
@@ -177,11 +182,19 @@ class PlannerAgent(AgentBase):
         self._smash.aim_for(self._kinds[intent])
         return "smash" if self._smash.scout(situation) is not None else None
 
+    def _any_stroke(self, situation: Situation) -> str | None:
+        """A shot of any worth, or else a roll: what sends the puck away before the time is up."""
+        self._smash.aim_for(ANY)
+        if self._smash.scout(situation) is not None:
+            return "smash"
+        return "drop" if self._drop.scout(situation) is not None else None
+
     def _look(self, observation: Array) -> Situation:
         return self._situation(*self._watch.see(observation, self._controller.tip_position()), self._step)
 
     def _situation(self, puck: PuckEstimate, tip: Array, opponent: Array | None, step: int) -> Situation:
         controller = self._controller
         return Situation(
-            puck, tip, controller.tip_velocity(), opponent, self._dt, step, controller.move, controller.state.position
-        )
+            puck, tip, controller.tip_velocity(), opponent, self._dt, step, controller.move, controller.state.position,
+            self._clock.see(float(puck.state[0])),
+        )  # fmt: skip

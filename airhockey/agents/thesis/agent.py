@@ -10,6 +10,7 @@ from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.parameters import control_parameters
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.prediction import puck_predictor
+from airhockey.agents.estimation.side_clock import SideClock
 from airhockey.agents.estimation.watch import TableWatch
 from airhockey.agents.skill import Situation, Skill
 from airhockey.agents.thesis.defend import DefendPolicy
@@ -60,6 +61,8 @@ class ThesisAgent(AgentBase):
         control = p.margins.within(control_parameters(spec))
         self._controller = JointController(ArmKinematics(spec), Workspace.of(env_info), self._dt, control)
         self._watch = TableWatch(env_info)
+        self._clock = SideClock(self._dt)
+        self._in_game = task_of(env_info) == "tournament"
         self._opponent = OpponentWatch(p.opponent_rate, self._dt)
         policies: dict[Task, Policy] = {
             Task.HOME: HomePolicy(p.home, p.hit.theta),
@@ -78,6 +81,7 @@ class ThesisAgent(AgentBase):
     def reset(self) -> None:
         """See `AgentBase.reset`."""
         self._watch.reset()
+        self._clock.reset()
         self._opponent.reset()
         self._machine.reset()
         self._switcher.reset()
@@ -97,7 +101,8 @@ class ThesisAgent(AgentBase):
         controller = self._controller
         puck, tip, opponent = self._watch.see(observation, controller.tip_position())
         self._opponent.see(opponent)
-        return Situation(puck, tip, controller.tip_velocity(), opponent, self._dt, move=controller.move)
+        held = self._clock.see(float(puck.state[0])) if self._in_game else 0.0
+        return Situation(puck, tip, controller.tip_velocity(), opponent, self._dt, move=controller.move, held=held)
 
     def _choose(self, now: Situation) -> Skill:
         """The skill for this step, begun if it is another than before or had finished."""

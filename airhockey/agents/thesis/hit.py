@@ -17,6 +17,7 @@ from math import asin, cos, degrees, hypot, inf, radians, sin, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.agents.estimation.side_clock import HURRY
 from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, HALF_LENGTH, HALF_WIDTH, OPPONENT_GOAL
 from airhockey.agents.thesis.opponent import OpponentWatch
@@ -146,7 +147,8 @@ class HitPolicy:
         if self.phase == "acceleration":
             return self._accelerate(now)
         p, puck = self._parameters, now.puck
-        if not enough_space(puck.position, p.side_tolerance, p.end_tolerance) or puck.position[0] > 0.0:
+        tolerances = (p.side_tolerance, p.end_tolerance) if now.held <= HURRY else (0.0, 0.0)
+        if not enough_space(puck.position, *tolerances) or puck.position[0] > 0.0:
             return Move(now.tip, finished=True)
         too_fast = puck.speed > 2.0 * p.wait_speed
         if self.phase == "wait":
@@ -188,7 +190,7 @@ class HitPolicy:
         target = cartesian(puck, Polar(here.beta + side * turn, radius), gamma)
         run_up = stand_off + p.run_up - p.stand_off
         ready = self.phase == "adjustment" and abs(off) < p.aligned and here.radius < run_up
-        if ready and (self._out_of_patience() or self._gap(now)):
+        if ready and (now.held > HURRY or self._out_of_patience() or self._gap(now)):
             self._enter("acceleration")
         end = cartesian(puck, Polar(180.0, stand_off), gamma)
         longest = min(p.longest_step, stoppable_step(now.tip, end, p.acceleration, now.dt))

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.estimation.kalman import PuckEstimate
+from airhockey.agents.estimation.side_clock import HURRY
 from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, HALF_LENGTH, HOME
 from airhockey.agents.thesis.bank_shot import bank_aim
@@ -114,7 +115,8 @@ class PreparePolicy:
         """See `Policy.step`."""
         p = self._parameters
         self._t_phase += 1
-        if self.phase != "retreat" and enough_space(now.puck.position, p.side_tolerance, p.end_tolerance):
+        tolerances = (p.side_tolerance, p.end_tolerance) if now.held <= HURRY else (0.0, 0.0)
+        if self.phase != "retreat" and enough_space(now.puck.position, *tolerances):
             return Move(now.tip, finished=True)
         if self.phase == "wait":
             if now.puck.speed >= p.wait_speed or self._leaves(now.puck):

@@ -9,6 +9,7 @@ puck that has come to rest is decided once (`RestingPuck`).
 from dataclasses import dataclass
 
 from airhockey.agents.estimation.motion import advance, puck_motion
+from airhockey.agents.estimation.side_clock import HURRY
 from airhockey.agents.skill import Situation
 from airhockey.agents.thesis.policy import enough_space
 from airhockey.agents.thesis.resting import RestingPuck
@@ -61,6 +62,8 @@ class Switcher:
             return Task.DEFEND
         if puck.position[0] >= p.reach_x:
             return Task.HOME
+        if now.held > HURRY and enough_space(puck.position):  # in a hurry the mallet need only fit behind the puck
+            return Task.HIT
         if self._resting.playable is not None:
             return Task.HIT if self._resting.playable else Task.PREPARE
         later = puck.state.copy()

@@ -11,6 +11,7 @@ import contextlib
 import hashlib
 import logging
 import pickle
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator
@@ -190,7 +191,8 @@ def _local(workers: int, attempts: int) -> Iterator[Any]:
     import dask
 
     settings = {"distributed.scheduler.worker-saturation": 1.0, "distributed.scheduler.allowed-failures": attempts - 1}
-    with dask.config.set(settings), children_environment():
+    scratch = tempfile.TemporaryDirectory(prefix="airhockey-cluster-", ignore_cleanup_errors=True)
+    with scratch as folder, dask.config.set(settings | {"temporary-directory": folder}), children_environment():
         with no_interrupts():
             cluster = _distributed().LocalCluster(
                 n_workers=workers,

@@ -244,7 +244,7 @@ class IsolatedAgent(NotCopyable, AgentHandle):
 
     def _new_group(self) -> Group | None:
         """The cgroup of all its processes; None where the machine lets us have none."""
-        group = new_group(self._limits)
+        group = new_group(self._limits, self._launch.sandbox)
         if group is not None:
             try:
                 for pid in dict.fromkeys((self._pid, self._first or self._pid)):

@@ -7,6 +7,7 @@ version 1 are known. Where no cgroup can be made, there are the limits of each p
 import contextlib
 import itertools
 import os
+import secrets
 import signal
 import time
 from collections.abc import Iterator
@@ -18,8 +19,6 @@ from airhockey.evaluator.isolation.limits import Limits
 _PREFIX = "airhockey-"
 _STALE = 60.0  # [s], after which an empty group of a process that is gone is removed
 _PERIOD = 100_000  # [µs] of the CPU's quota
-_UNLIMITED = 1 << 62  # [bytes]: what version 1 says of a group without a limit is more
-_numbers = itertools.count()
 
 
 @dataclass
@@ -67,11 +66,18 @@ class Group:
         self.folders = {}
 
 
-def new_group(limits: Limits) -> Group | None:
-    """A group with an agent's limits; None where this machine lets us make none."""
-    name = f"{_PREFIX}{os.getpid()}-{next(_numbers)}"
+def new_group(limits: Limits, count_processes: bool = True) -> Group | None:
+    """A group with an agent's limits; None where this machine lets us make none.
+
+    Args:
+        limits: The agent's.
+        count_processes: Also limit their number, as `Limits.apply`.
+    """
+    name = f"{_PREFIX}{os.getpid()}-{secrets.token_hex(4)}"  # containers may share folders, and count from 1
     group = Group()
     for resource, parents in _parents().items():
+        if resource == "processes" and not count_processes:
+            continue
         for parent in parents:
             folder = parent / name
             try:

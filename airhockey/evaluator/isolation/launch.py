@@ -2,7 +2,6 @@
 
 import os
 import shutil
-import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -20,6 +19,7 @@ from airhockey.evaluator.isolation.sandbox import (
     walls,
 )
 from airhockey.inputs.hashing import TOOLS, files_of
+from airhockey.inputs.temporary_folders import temporary_folder
 
 SUBMISSION = "/submission"
 _NOTHING = 4096  # [bytes]
@@ -55,7 +55,7 @@ def plain(checkout: Checkout | None, own: Interpreter | None = None) -> Launch:
         checkout: The submission; None for a player of the registry.
         own: The interpreter that it brings; None for ours.
     """
-    scratch = tempfile.mkdtemp(prefix="airhockey-scratch-")
+    scratch = str(temporary_folder("scratch"))
     root = None if checkout is None else str(checkout.root)
     return Launch(_command(own), environment(scratch, own), root or scratch, root, temporary_folders=[scratch])
 
@@ -120,7 +120,7 @@ def _readable(folder: Path, temporary_folders: list[str]) -> Path:
     places = {folder, *files, *(parent for file in files for parent in file.parents if parent.is_relative_to(folder))}
     if not is_root() or all(place.stat().st_mode & (0o005 if place.is_dir() else 0o004) for place in places):
         return folder
-    copy = Path(tempfile.mkdtemp(prefix="airhockey-submission-"))
+    copy = temporary_folder("submission")
     temporary_folders.append(str(copy))
     target = copy / "entry"
     shutil.copytree(folder, target, symlinks=True, ignore=shutil.ignore_patterns(*TOOLS))

@@ -16,7 +16,7 @@ class Limits:
         cpu: CPU time of each process, in [s]; no evaluation takes as long.
         file: Size of a file, in bytes.
         scratch: All files in the private scratch folder of a sandbox, in bytes.
-        processes: Processes and threads together; counted in a sandbox and by a cgroup.
+        processes: Processes and threads together; counted in the sandbox only.
         cores: CPU cores that its processes may keep busy together; where there is a cgroup.
         open_files: Open files of each process.
         start: Time to import and build the agent, in [s].

@@ -71,7 +71,7 @@ def protection(sandbox: bool, by_cgroup: Collection[str]) -> str:
         by_cgroup: What the kernel limits for all its processes together, see `cgroup.Group`.
     """
     walls = ["bubblewrap", "seccomp"] if sandbox else []
-    if len(by_cgroup) == len(LIMITED):
+    if {*LIMITED} - {*by_cgroup} <= (set() if sandbox else {"processes"}):
         kernel = ["cgroup"]
     else:
         kernel = [f"cgroup of {' and '.join(by_cgroup)}"] if by_cgroup else ["rlimits"]

@@ -49,9 +49,10 @@ class Watch:
 
     def __enter__(self) -> Self:
         if self._file is not None and self._file.parent.is_dir():  # a worker elsewhere may not see the folder
-            self._file.write_bytes(b"-".ljust(_SIZE))
-            with self._file.open("r+b") as file:
-                self._map = mmap.mmap(file.fileno(), _SIZE)
+            with contextlib.suppress(OSError):  # where the disk is full, nothing is shown
+                self._file.write_bytes(b"-".ljust(_SIZE))
+                with self._file.open("r+b") as file:
+                    self._map = mmap.mmap(file.fileno(), _SIZE)
         if threading.current_thread() is threading.main_thread():
             self._handler = signal.signal(signal.SIGALRM, self._on_alarm)
             signal.setitimer(signal.ITIMER_REAL, _BEAT, _BEAT)

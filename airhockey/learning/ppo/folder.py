@@ -49,9 +49,7 @@ class PolicyFolder(SkillFolder):
         package = self.path / PACKAGE
         with disk_errors(self.path):
             package.mkdir(exist_ok=True)
-            part = package / f"part-{NETWORK}"
-            network.save(part)
-            part.replace(package / NETWORK)
+            replace_file(package / NETWORK, network.as_bytes())
             replace_file(package / POLICY, yaml.safe_dump(policy, sort_keys=False).encode())
             replace_file(package / METADATA, yaml.safe_dump(metadata, sort_keys=False).encode())
             replace_file(package / BUILDER, _BUILDER.encode())

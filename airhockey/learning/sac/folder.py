@@ -64,9 +64,7 @@ class SkillFolder(RunFolder[Any, Any]):
             log = self.path / LOG
             state = {**state, "log": log.stat().st_size if log.exists() else 0}
             replace_file(self.path / CHECKPOINT, pickle.dumps(state, protocol=5))
-            part = self.path / f"part-{NETWORK}"
-            network.save(part)
-            part.replace(self.path / NETWORK)
+            replace_file(self.path / NETWORK, network.as_bytes())
 
     def load(self) -> dict[str, Any] | None:
         """The last checkpoint, or None before the first; what the log says of later episodes is cut off."""

@@ -16,6 +16,7 @@ class Kind(NamedTuple):
         rims: How many rims it takes before the goal; −1: none or one, as it comes.
         pace: Speed with which the puck leaves, in [m]/[s].
         lowest: Least |y| on the goal line that is aimed at, in [m].
+        post: Which post it is aimed at: 1 that on the side of the last rim, −1 the other, 0 either.
         heeds: Whether the keeper's present place counts; otherwise only whether the puck would go in without it.
     """
 
@@ -23,20 +24,25 @@ class Kind(NamedTuple):
     rims: int
     pace: float
     lowest: float
+    post: int
     heeds: bool
 
 
-OPEN = Kind("open", -1, FULL, 0.0, True)
+OPEN = Kind("open", -1, FULL, 0.0, 0, True)
 """Where the keeper leaves most room now: the only kind for a single episode."""
+ANY = OPEN._replace(heeds=False)
+"""Away with the puck, whatever the keeper does: for when the 15 s on a side are running out."""
 KINDS = (
     OPEN,
-    Kind("corner", 0, FULL, 0.05, False),
-    Kind("rim", 1, FULL, 0.0, False),
-    Kind("middling rim", 1, 1.4, 0.0, False),
-    Kind("slow rim", 1, 1.2, 0.04, False),
-    Kind("slower rim", 1, 1.12, 0.04, False),
-    Kind("slowest rim", 1, 1.04, 0.02, False),
-    Kind("rolling corner", 0, 0.92, 0.06, False),
+    Kind("corner", 0, FULL, 0.06, 0, False),
+    Kind("near rim", 1, FULL, 0.07, 1, False),
+    Kind("far rim", 1, FULL, 0.07, -1, False),
+    Kind("double rim", 2, FULL, 0.06, 1, False),
+    Kind("middling double rim", 2, 1.9, 0.06, 1, False),
+    Kind("slow rim", 1, 1.1, 0.05, 1, False),
+    Kind("slowest rim", 1, 1.03, 0.04, 1, False),
+    Kind("rolling corner", 0, 0.82, 0.03, 0, False),
 )
-"""Those of a game. The slow ones come in by the rim with little left of their speed: who foresees no bounce goes the wrong
-way first, and who does must wait."""
+"""Those of a game. At full pace off a rim or two, a keeper has the least time after the last bounce, and least of all at the
+post on that side. The slow ones come in with little left of their speed: who foresees no bounce goes the wrong way first, and
+who does must wait."""

@@ -20,6 +20,8 @@ class SmashParameters:
         speed_places: x of the contact, in the table frame, in [m], ascending.
         speeds: Mallet speed that the arm reaches there, in [m]/[s]; linear between the places.
         diagonal: By what share a stroke across is faster than one along x: times the square of its direction's sine.
+        fastest: No stroke is faster, in [m]/[s].
+        brisk: Speed of the puck up to which a shot at full pace is worth more, the faster it is, in [m]/[s]; 0: it is not.
         least_speed: Below this no stroke is worth it, in [m]/[s].
         acceleration, braking: Of the mallet in a stroke, in [m]/[s²].
         steady: Time at full speed before the contact, in [s].
@@ -78,6 +80,8 @@ class SmashParameters:
     approach_margin: float
     clearance: float
     diagonal: float = 0.0
+    fastest: float = 10.0
+    brisk: float = 0.0
     posture: tuple[float, ...] = ()
     posture_gain: float = 0.0
 

@@ -13,6 +13,9 @@ from airhockey.envs.specs import PUCK
 
 Array = NDArray[np.float64]
 
+ALONG = 0.836
+"""Share of its velocity along a wall that a puck without spin keeps in a bounce: right within 3 cm at the goal."""
+
 
 class ShotModel(NamedTuple):
     """Table frame; units as in `SmashParameters`, whose attributes of the same names are meant.
@@ -20,7 +23,7 @@ class ShotModel(NamedTuple):
     Attributes:
         motion: `PuckMotion.constants`. Shape (8,).
         wall: |y| where the puck's centre turns round, in [m].
-        restitution: Of the walls.
+        slope: What a bounce off a wall leaves of the slope of a puck's way: restitution over `ALONG`.
         puck_radius, contact: In [m]; distance of the centres at contact, in [m].
         goal_line: x of the opponent's goal, in [m]; ours is at its negative.
         mouth: |y| within which the puck must not be waited for near our own goal, in [m].
@@ -29,7 +32,7 @@ class ShotModel(NamedTuple):
 
     motion: Array
     wall: float
-    restitution: float
+    slope: float
     puck_radius: float
     contact: float
     goal_line: float
@@ -43,6 +46,8 @@ class ShotModel(NamedTuple):
     speed_places: Array
     speeds: Array
     diagonal: float
+    fastest: float
+    brisk: float
     least_speed: float
     acceleration: float
     braking: float
@@ -68,7 +73,7 @@ def make_shot_model(parameters: SmashParameters, workspace: Workspace) -> ShotMo
     return ShotModel(
         motion=motion.constants,
         wall=float(motion.constants[1]),
-        restitution=motion.restitution,
+        slope=motion.restitution / ALONG,
         puck_radius=PUCK.radius,
         contact=CONTACT,
         goal_line=HALF_LENGTH,

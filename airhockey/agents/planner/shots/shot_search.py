@@ -1,5 +1,6 @@
 """The search for a shot, spread over the control steps: a few candidates at each, and the best so far is kept up to date."""
 
+from math import copysign
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from airhockey.agents.compiling import compiled
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.planner.estimation.opponent import OpponentTrack
 from airhockey.agents.planner.shots.flight import FLIGHT_STEP, coast, state_at
-from airhockey.agents.planner.shots.kinds import OPEN, Kind
+from airhockey.agents.planner.shots.kinds import ANY, OPEN, Kind
 from airhockey.agents.planner.shots.parameters import SmashParameters
 from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
 from airhockey.agents.planner.shots.shots import Attempt, Keeper, Shot, judge
@@ -62,7 +63,7 @@ class ShotPlanner:
             time_left: Until the episode ends, in [s].
             kind: Of shot.
         """
-        if kind is not self._kind:
+        if kind != self._kind:
             self.reset()
             self._kind = kind
         p = self._parameters
@@ -80,7 +81,8 @@ class ShotPlanner:
             *kind[1:], self._model,
         )  # fmt: skip
         self._tried += count
-        return self._best if self._best.value > self._least else None
+        least = 0.0 if kind == ANY else self._least
+        return self._best if self._best.value > least else None
 
 
 @compiled
@@ -98,6 +100,7 @@ def search(
     rims: int,
     pace: float,
     lowest: float,
+    post: int,
     heeds: bool,
     packed: NDArray[Any],
 ) -> Shot:
@@ -113,7 +116,7 @@ def search(
         count: How many to try.
         horizon: Longest wait, in [s].
         improvement: By how much another shot must be better than the best.
-        rims, pace, lowest, heeds: As in `kinds.Kind`.
+        rims, pace, lowest, post, heeds: As in `kinds.Kind`.
         packed: A record of `ShotModel`.
     """
     model = packed[0]
@@ -133,6 +136,9 @@ def search(
                 wall = 0.0
             aim = 2.0 * v - 1.0
             aim = aim * (model.goal_half_width - lowest) + (lowest if aim > 0.0 else -lowest)
+            if post != 0 and wall != 0.0:
+                last = wall if rims % 2 == 1 else -wall  # where it bounces last
+                aim = copysign(aim, post * last)
         else:
             wait, wall = best.wait + 0.1 * (u - 0.5), best.wall
             aim = best.aim + 0.05 * (v - 0.5)

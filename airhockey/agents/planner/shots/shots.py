@@ -4,7 +4,7 @@ A shot is judged by one simulated flight of the puck: how far from the posts it 
 opponent's mallet it stays, both against the spread that the flight's length gives them.
 """
 
-from math import exp, sqrt
+from math import copysign, exp, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from airhockey.agents.compiling import compiled
 from airhockey.agents.planner.shots.aiming import after_strike, mirrored, strike_normal
 from airhockey.agents.planner.shots.flight import FLIGHT_STEP, arrives, fly, probability_positive, probability_within
-from airhockey.agents.planner.shots.kinds import WAY
+from airhockey.agents.planner.shots.kinds import FULL, WAY
 from airhockey.agents.planner.shots.shot_model import ShotModel
 
 Array = NDArray[np.float64]
@@ -23,7 +23,7 @@ FORWARD = 0.3
 AROUND = 0.3
 """Time that it takes to go round the puck, in [s]."""
 CORRECTIONS = 2
-"""Of the aim of a bounced shot, after its flight: the mirror does not know that a bounce takes tangential velocity, too."""
+"""Of the aim of a bounced shot, after its flight: the mirror knows nothing of damping and spin."""
 _DECAY = 3  # place in the constants of `PuckMotion`
 THERE = 0.02
 """Distance from which the mallet counts as being where a strike begins, in [m]."""
@@ -108,12 +108,12 @@ def judge(seen: Array, attempt: Attempt, tip: Array, keeper: Keeper, pace: float
     puck = seen.copy()
     puck[3] = model.drift_kept * seen[3] + model.spin_share * model.puck_radius * seen[4]
     rims = round(abs(wall))
-    target = aim if rims == 0 else mirrored(aim, wall * model.wall, rims, model.restitution)
+    target = aim if rims == 0 else mirrored(aim, copysign(model.wall, wall), rims, model.slope)
     speed = float(np.interp(puck[0] - model.contact, model.speed_places, model.speeds))
     leaving = pace + model.motion[_DECAY] * (model.goal_line - puck[0] - WAY)
     way_x, way_y = model.goal_line - puck[0], target - puck[1]
     speed *= 1.0 + model.diagonal * way_y * way_y / (way_x * way_x + way_y * way_y)
-    speed = min(speed, (leaving + (model.gain - 1.0) * puck[2]) / model.gain)
+    speed = min(speed, model.fastest, (leaving + (model.gain - 1.0) * puck[2]) / model.gain)
     normal = _towards(puck, target, speed, model)
     room = room_speed(puck[:2] - model.contact * normal, normal, model)
     if room < speed:  # a slower mallet must strike more from the side that the puck moves to
@@ -132,7 +132,7 @@ def judge(seen: Array, attempt: Attempt, tip: Array, keeper: Keeper, pace: float
     for _ in range(CORRECTIONS * rims):
         if not arrives(goal):
             return nothing
-        target += turns * (aim - goal) / model.restitution**rims
+        target += turns * (aim - goal) / model.slope**rims
         normal = _towards(puck, target, speed, model)
         mallet = puck[:2] - model.contact * normal
         if normal[0] < FORWARD or not possible(Line(mallet, normal, speed), spare, tip, puck, model):
@@ -148,8 +148,17 @@ def judge(seen: Array, attempt: Attempt, tip: Array, keeper: Keeper, pace: float
         if keeper.heeds:
             value *= probability_positive(gap, apart)
         value *= exp(-model.patience * wait)
+        if pace >= FULL and model.brisk > 0.0:
+            value *= _briskness(_struck(puck, normal, speed, model), model.brisk)
     commanded = turned(normal, model.turn)
     return Shot(value, wait, aim, wall, speed, commanded, puck[:2] - model.contact * commanded)
+
+
+@compiled
+def _briskness(struck: Array, brisk: float) -> float:
+    """What a puck's speed is worth, as a share: its square, up to a speed that is enough, in [m]/[s]."""
+    share = min(sqrt(struck[2] * struck[2] + struck[3] * struck[3]) / brisk, 1.0)
+    return share * share
 
 
 @compiled

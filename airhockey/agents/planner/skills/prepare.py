@@ -17,10 +17,26 @@ from airhockey.agents.parameters import load_parameters
 from airhockey.agents.planner.contacts.puck_physics import put_on_table
 from airhockey.agents.planner.estimation.rest_detection import RestDetection
 from airhockey.agents.planner.motion.driving import drive, go_to, round_the_puck
-from airhockey.agents.planner.pushes.push import END, FOLLOW, LENGTH, PLACE, RETREAT, RUN_UP, START, coast, mallet_at
+from airhockey.agents.planner.pushes.push import (
+    END,
+    FOLLOW,
+    LENGTH,
+    PLACE,
+    RETREAT,
+    RUN_UP,
+    START,
+    VELOCITY,
+    coast,
+    mallet_at,
+)
 from airhockey.agents.planner.pushes.push_search import Found, Goal, finish, search, value, worth
 from airhockey.agents.skill import Array, Situation
 from airhockey.agents.table import CONTACT, to_table
+
+FURTHER = 0.0025
+"""How much further a push goes than the last, which has not touched the puck, in [m]."""
+TOUCHED = 0.01
+"""Way of the puck that shows that a push has touched it, in [m]."""
 
 
 @dataclass(frozen=True)
@@ -115,6 +131,7 @@ class Prepare:
 
     def _restart(self) -> None:
         self.phase, self._well, self._rounds = "wait", False, 0
+        self._missed = 0  # pushes in a row that have not moved the puck
         self._rng = np.random.default_rng(self._parameters.seed)
         self._forget()
 
@@ -201,7 +218,7 @@ class Prepare:
             if np.hypot(*moved) > p.drift:
                 self._think_again()
                 return drive(situation, np.zeros(2), p.travel_acceleration)
-            self._aim(-self._sag)
+            self._aim(-self._sag + self._further())
             self.phase, self._time = "strike", -self._push[RUN_UP]
             return self._strike(situation)
         if self._steps > p.patience:
@@ -214,6 +231,11 @@ class Prepare:
         for part in (PLACE, END):
             self._push[part : part + 2] = np.clip(self._push[part : part + 2] + moved, self._lower, self._upper)
 
+    def _further(self) -> Array:
+        """By how much the next push goes further than planned, for those that did not reach the puck, in [m]. Shape (2,)."""
+        velocity = self._push[VELOCITY : VELOCITY + 2]
+        return np.asarray(FURTHER * self._missed / max(float(np.hypot(*velocity)), 1e-9) * velocity)
+
     def _think_again(self) -> None:
         """The puck lies elsewhere: begin with the push that was taken along."""
         finish(self._push, self._now)
@@ -225,6 +247,8 @@ class Prepare:
         self._time += situation.dt
         if self._time >= self._push[FOLLOW] + self._push[RETREAT]:
             self.phase = "wait"
+            moved = np.hypot(*(situation.puck.position - self._puck[:2]))
+            self._missed = self._missed + 1 if moved < TOUCHED else 0
         states = np.array([mallet_at(self._push, axis, self._time) for axis in range(2)])
         return situation.move(states[:, 0].copy(), states[:, 1].copy())
 

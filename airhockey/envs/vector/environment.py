@@ -84,7 +84,7 @@ class VectorEnvironment:
             raise ConfigurationError(f"a batch has one interpolation order for all players, not {interpolation_order}")
         self.num_envs = n = int(num_envs)
         self.single = single = Environment(name, interpolation_order, disturbances, edition_name)
-        self._threads = Threads(threads)
+        self._threads = Threads(threads, most=n)
         self._environments = [single.copy() for _ in range(n)]
         form, robots, joints = single.formats[0], single.n_agents, single.simulation.robot.n_joints
         self.action_shape = form.shape if single.n_players == 1 else (2, *form.shape)

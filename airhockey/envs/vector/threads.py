@@ -15,13 +15,14 @@ class Threads:
 
     Args:
         count: At least 1.
+        most: How many have work at all; no more are started.
     """
 
-    def __init__(self, count: int) -> None:
+    def __init__(self, count: int, most: int | None = None) -> None:
         if isinstance(count, bool) or not isinstance(count, int) or count < 1:
             raise ConfigurationError(f"{count!r} threads: it must be a whole number from 1 up, best that of the cores")
-        self.count = count
-        self._helpers = [_Helper() for _ in range(count - 1)]
+        self.count = count if most is None else min(count, most)
+        self._helpers = [_Helper() for _ in range(self.count - 1)]
         self._stop = weakref.finalize(self, _stop, self._helpers)
 
     def run(self, function: Callable[..., Any], *arguments: Any) -> None:

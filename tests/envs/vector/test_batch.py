@@ -87,3 +87,9 @@ def test_a_failure_in_a_thread_is_raised_where_it_was_asked_for():
     threads.run(lambda: done.append(1))
     assert done == [1, 1]
     threads.close()
+
+
+def test_no_more_threads_are_started_than_there_are_environments():
+    from airhockey.envs.vector.threads import Threads
+
+    assert (Threads(4, most=1).count, Threads(2, most=8).count) == (1, 2)

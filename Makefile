@@ -45,7 +45,7 @@ compatibility: .venv/dev.installed
 	CLEAN_INSTALL=1 $(BIN)/pytest tests/submissions tests/envs/test_official_info.py tests/test_clean_install.py
 
 clean:
-	rm -rf .venv build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .cache docs/commands.md
+	rm -rf .venv build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .cache
 
 .venv/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed; say which with make PYTHON=...")'

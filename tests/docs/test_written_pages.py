@@ -1,4 +1,4 @@
-"""The pages of the rules are what the editions' files give, and say their numbers."""
+"""Pages that are written by scripts: those of the rules are what the editions' files give, the reference is of these commands."""
 
 import re
 from pathlib import Path
@@ -36,3 +36,8 @@ def test_a_drawing_has_its_regions_on_the_table(rules_pages: ModuleType) -> None
             ]
             assert len(boxes) > len(rules.starts_of(name))
             assert all(x + w <= width and y + h <= height for x, y, w, h in boxes)
+
+
+def test_the_reference_of_the_command_line_is_of_these_commands() -> None:
+    written = "\n".join(load_script(ROOT, "command_reference").reference())
+    assert (ROOT / "docs" / "commands.md").read_text("utf-8") == written, "make docs"

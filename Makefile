@@ -6,6 +6,8 @@
 #   make docs         the documentation, in build/site
 
 PYTHON ?= python3
+# One more than cores: tests wait for processes that they kill, for deadlines, for a browser.
+WORKERS ?= $(shell expr $$(nproc 2>/dev/null || echo 2) + 1)
 BIN := .venv/bin
 TASK ?= prepare
 EPISODES ?= 1000
@@ -36,7 +38,7 @@ players: .venv/dev.installed
 	$(BIN)/python scripts/compile_players.py
 
 pytest: .venv/dev.installed players
-	$(BIN)/pytest --numprocesses auto
+	$(BIN)/pytest --numprocesses $(WORKERS)
 
 figures: .venv/dev.installed
 	$(BIN)/python scripts/figures.py measure

@@ -12,6 +12,7 @@ Runs on this machine, against this checkout only, in folders and sandboxes of it
 import argparse
 import importlib
 import json
+import os
 import sys
 import time
 from pathlib import Path
@@ -35,6 +36,7 @@ def main() -> int:
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="keep there what every attack ended in")
     parser.add_argument("--table", type=Path, metavar="FILE", help="put the table into this page, where its mark is")
     given = parser.parse_args()
+    os.environ.pop("PYTHONSAFEPATH", None)  # whoever calls may have it; this folder's own scripts import each other
     product.adopt_orphans()
     product.WANTED = given.name
     kept: dict[str, Outcomes] = {}

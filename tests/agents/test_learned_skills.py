@@ -85,7 +85,7 @@ def test_a_file_that_is_none_or_too_large_is_refused(tmp_path):
 
 
 def test_a_network_for_something_else_is_refused(tmp_path):
-    small_network().save(tmp_path / "n.npz")
+    (tmp_path / "n.npz").write_bytes(small_network().as_bytes())
     with pytest.raises(ConfigurationError, match="maps 3 numbers to 2; defend needs 16 to 2"):
         trained("defend", "7dof", tmp_path / "n.npz")
     with pytest.raises(ConfigurationError, match="nowhere"):

@@ -2,6 +2,7 @@
 #   make evaluate     the main job on the default agent (core dependencies only)
 #   make test         lint, types, layers, documentation and tests
 #   make compatibility   entries of others here, ours beside the official package (fetches packages)
+#   make long         every test, also those that take many seconds
 #   make figures      the figures of README and documentation, measured anew (hours)
 #   make docs         the documentation, in build/site
 
@@ -12,7 +13,7 @@ BIN := .venv/bin
 TASK ?= prepare
 EPISODES ?= 1000
 
-.PHONY: compatibility figures evaluate test lint types layers docs players pytest clean
+.PHONY: compatibility figures long evaluate test lint types layers docs players pytest clean
 
 evaluate: .venv/core.installed
 	$(BIN)/hockey evaluate --task $(TASK) --episodes $(EPISODES)
@@ -40,11 +41,14 @@ players: .venv/dev.installed
 pytest: .venv/dev.installed players
 	$(BIN)/pytest --numprocesses $(WORKERS)
 
+long: .venv/dev.installed players
+	LONG=1 $(BIN)/pytest --numprocesses $(WORKERS)
+
 figures: .venv/dev.installed
 	$(BIN)/python scripts/figures.py measure
 
 compatibility: .venv/dev.installed
-	CLEAN_INSTALL=1 $(BIN)/pytest tests/submissions tests/envs/test_official_info.py tests/test_clean_install.py
+	CLEAN_INSTALL=1 LONG=1 $(BIN)/pytest tests/submissions tests/envs/test_official_info.py tests/test_clean_install.py
 
 clean:
 	rm -rf .venv build dist *.egg-info .mypy_cache .pytest_cache .ruff_cache .import_linter_cache .cache

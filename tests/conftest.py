@@ -1,5 +1,6 @@
 """Small agents as submission folders, short runs of them, and the command line in an empty folder."""
 
+import os
 import signal
 from collections.abc import Callable
 from functools import partial
@@ -15,6 +16,16 @@ from submissions import make_submission
 
 # A shell that starts the tests in the background has them ignore Ctrl-C, which some of them send.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What takes many seconds waits for `make long`, which runs everything; `make test` keeps a shorter one of its kind."""
+    if "LONG" in os.environ:
+        return
+    skip = pytest.mark.skip(reason="takes many seconds: make long")
+    for item in items:
+        if item.get_closest_marker("long") is not None:
+            item.add_marker(skip)
 
 
 @pytest.fixture

@@ -97,6 +97,7 @@ def test_a_bounced_shot_flies_to_where_it_is_aimed(model: ShotModel, wall: float
     assert fly(puck, NOBODY, 0.0, model)[0] == pytest.approx(0.02, abs=0.015)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("wall", [-2.0, 2.0])
 def test_a_shot_off_two_rims_flies_to_where_it_is_aimed(wall: float) -> None:
     workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0)
@@ -109,6 +110,7 @@ def test_a_shot_off_two_rims_flies_to_where_it_is_aimed(wall: float) -> None:
     assert fly(puck, NOBODY, 0.0, model)[0] == pytest.approx(0.05, abs=0.015)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("post", [-1, 1])
 @pytest.mark.parametrize("rims", [1, 2])
 def test_a_kind_of_shot_is_aimed_at_its_post(rims: int, post: int) -> None:

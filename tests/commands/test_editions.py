@@ -106,6 +106,7 @@ def test_workers_and_dask_play_it_as_this_process_does(hockey: Hockey, tmp_path:
     assert {key for key in result if result[key] != mine[key]} <= of_the_clock
 
 
+@pytest.mark.long
 def test_the_puck_comes_as_the_edition_says(tmp_path: Path) -> None:
     """Up to 5 m/s in 2025, up to 3 m/s in 2023."""
     fastest = {}
@@ -116,6 +117,7 @@ def test_the_puck_comes_as_the_edition_says(tmp_path: Path) -> None:
     assert fastest["2023"] < 3.0 < fastest["2025"] < 5.0
 
 
+@pytest.mark.long
 def test_games_of_an_edition(hockey: Hockey) -> None:
     status, out, _ = hockey("match hold hold --edition 2025 --steps 60 --jobs 1 --quiet --json --out match")
     assert status == 0 and json.loads(out)["edition"] == "2025"
@@ -169,6 +171,7 @@ def test_one_watches_it_too(hockey: Hockey, monkeypatch: pytest.MonkeyPatch) -> 
         live.close()
 
 
+@pytest.mark.long
 def test_what_reads_runs_keeps_editions_apart(hockey: Hockey) -> None:
     hockey(f"evaluate --task all {PLAYED} --out runs/old")
     hockey(f"evaluate --task all --edition 2025 {PLAYED} --out runs/new")

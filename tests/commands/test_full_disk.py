@@ -66,6 +66,7 @@ def test_a_match(hockey: Hockey, size: int) -> None:
     assert len(read_journal(Path("match"), GameRecord).records) == 1
 
 
+@pytest.mark.long
 def test_a_training_by_pgpe(hockey: Hockey) -> None:
     size = "--iterations 9 --episodes 1 --candidates 4 --jobs 1 --quiet"
     line = f"train pgpe --task hit --robot 3dof {size}"
@@ -79,6 +80,7 @@ def test_a_training_by_pgpe(hockey: Hockey) -> None:
     assert Path("run/parameters.yaml").read_text() == Path("whole/parameters.yaml").read_text()
 
 
+@pytest.mark.long
 def test_a_training_by_sac(hockey: Hockey) -> None:
     pytest.importorskip("stable_baselines3")
     line = "train sac --task home --robot 3dof --steps 60 --warm-up 20 --episodes 1 --quiet"

@@ -2,12 +2,14 @@
 
 from pathlib import Path
 
+import pytest
 import yaml
 from command_line import Hockey
 
 SHORT = "train ppo --task 3dof-defend --envs 4 --rollout 32 --batch 64 --epochs 1 --hidden 8 --threads 1"
 
 
+@pytest.mark.long
 def test_a_runs_folder_is_an_agent(hockey: Hockey) -> None:
     status, out, err = hockey(f"{SHORT} --steps 256 --episodes 2 --out run")
     assert status == 0

@@ -8,6 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorial.md"
 BLOCK = re.compile(
     r"^```(?P<language>\w+)(?: title=\"(?P<title>[^\"]+)\")?\n(?P<body>.*?)^```$", re.MULTILINE | re.DOTALL
@@ -42,6 +44,7 @@ def lasting_words(block: list[str]) -> list[str]:
     return [line for line in block if line.startswith(("stored in ", "my_agent/", "my_agent: "))]
 
 
+@pytest.mark.long
 def test_the_tutorial_does_what_it_says(tmp_path: Path) -> None:
     """Every command succeeds, and the agent that it ends with is better than the one that it starts with."""
     commands = 0

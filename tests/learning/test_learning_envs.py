@@ -31,6 +31,7 @@ def walk(batch, steps, seed=0):
         yield action
 
 
+@pytest.mark.long
 @KINDS
 @pytest.mark.parametrize("disturbances", ["ideal", "server"])
 def test_every_environment_of_a_batch_is_what_it_is_alone(task, kind, disturbances):

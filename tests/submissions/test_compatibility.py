@@ -40,12 +40,14 @@ def assert_the_same(env: str, agent: Path) -> list[Episode]:
     return here
 
 
+@pytest.mark.long
 def test_the_planar_hitting_agent_plays_the_same_in_every_mode(sandbox: None) -> None:
     episodes = assert_the_same("3dof-hit", EXAMPLES / "planar_hitting")
     moved = [np.ptp(episode.trajectory["true_observations"][:, 0]) for episode in episodes]
     assert max(moved) > 0.1  # it hits the puck
 
 
+@pytest.mark.long
 def test_the_iiwa_agent_with_saved_parameters_plays_the_same_in_every_mode(sandbox: None, striker: Path) -> None:
     episodes = assert_the_same("7dof-hit", striker)
     assert episodes[0].trajectory["actions"].shape[1:] == (3, 7)

@@ -51,6 +51,7 @@ def actions(entry: Path, env_name: str, mode: str, python: str | None, steps: in
         agent.close()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mode", ["process", "sandbox"])
 @pytest.mark.parametrize("name", ["helper_packages", "no_base_class"])
 def test_it_plays_there_as_here(bare: str, sandbox: None, name: str, mode: str) -> None:

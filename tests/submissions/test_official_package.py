@@ -249,6 +249,7 @@ def make_it(env_info, **kwargs):
 """
 
 
+@pytest.mark.long
 def test_an_official_evaluation_leaves_the_official_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "my_own_builder.py").write_text(BUILDER)
     monkeypatch.syspath_prepend(str(tmp_path))

@@ -133,8 +133,8 @@ def test_all_play_at_home_and_away(here: dict[str, Any]) -> None:
 
 
 SANDBOXED = [name for name in PLAYS if name != "threaded_planner"]
-if "CLEAN_INSTALL" not in os.environ:
-    SANDBOXED = SANDBOXED[::4]  # `make compatibility` plays them all
+if "LONG" not in os.environ:
+    SANDBOXED = SANDBOXED[::5]  # `make compatibility` plays them all
 
 
 @pytest.mark.parametrize("name", SANDBOXED)
@@ -142,6 +142,7 @@ def test_one_plays_in_the_sandbox_as_here(zoo: Path, here: dict[str, Any], sandb
     np.testing.assert_array_equal(list(play(zoo / name, tasks(zoo / name)[0], "sandbox")), here[name])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["own_copy_extended", "relative_files"])
 def test_one_plays_away_in_a_process_and_in_the_sandbox(
     zoo: Path, here: dict[str, Any], sandbox: None, name: str

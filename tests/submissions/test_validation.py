@@ -35,6 +35,7 @@ def test_our_packed_agent_plays_in_the_sandbox(sandbox: None, tmp_path: Path) ->
     assert isinstance(outcome, Trial) and outcome.steps == 20 and outcome.start < 30.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["template", "thesis"])
 def test_our_agents_offer_what_the_official_evaluator_calls(name: str) -> None:
     code = f"""
@@ -87,6 +88,7 @@ def hockey(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, env=os.environ | {"COLUMNS": "200"})
 
 
+@pytest.mark.long
 def test_the_commands_from_an_idea_to_a_judged_entry(tmp_path: Path) -> None:
     assert hockey(tmp_path, "new", "mine").returncode == 0
     (tmp_path / "mine" / "submission.yaml").write_text("name: mine\ntasks: [3dof-hit]\n")
@@ -164,6 +166,7 @@ def test_one_line_says_why_whose_cause_and_what_to_do(name: str, words: list[str
     assert [word for word in words if word not in verdict.conclusion] == []
 
 
+@pytest.mark.long
 @NEEDS_MUSHROOM
 def test_the_verdict_says_whose_copy_of_the_package_plays() -> None:
     verdict = validate(ZOO / "own_copy_extended", "process", LIMITS, steps=3)

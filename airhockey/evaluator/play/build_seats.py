@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,9 +18,6 @@ from airhockey.evaluator.play.seat import Care, Seat
 from airhockey.evaluator.play.seeding import seed_global_generators
 from airhockey.evaluator.runs.game_records import SIDES
 from airhockey.evaluator.runs.records import Order
-
-if TYPE_CHECKING:
-    from airhockey.evaluator.isolation.modes import Mode
 
 Orders = tuple[int | None, ...]
 
@@ -62,12 +59,11 @@ class Entrant:
             return 3  # the builder will say the same
 
     @property
-    def mode(self) -> "Mode":
+    def mode(self) -> Mode:
         """Where it is to live; raises `ConfigurationError` where this machine cannot have that."""
-
         return choose(self.agent, None if self.isolate == "auto" else self.isolate).mode
 
-    def build(self, env: Any, agent_id: int, mode: "Mode") -> AgentHandle:
+    def build(self, env: Any, agent_id: int, mode: Mode) -> AgentHandle:
         """The agent, made for this environment. Raises what its code raises."""
         from airhockey.agents import AGENTS
         from airhockey.evaluator.isolation.build import build_agent
@@ -81,7 +77,7 @@ class Entrant:
         if self.parameters is not None:
             kwargs["parameters"] = self.parameters
         return build_agent(
-            self.agent, env, agent_id, mode=self.mode, limits=self.limits, seed=self.seed, python=self.python, **kwargs
+            self.agent, env, agent_id, mode=mode, limits=self.limits, seed=self.seed, python=self.python, **kwargs
         )
 
 
@@ -139,7 +135,7 @@ def _seat(entrant: Entrant, env: Any, k: int, care: Care) -> Seat:
         with care.watch.over(SIDES[k]):
             agent = entrant.build(env, k + 1, mode)
     except agent_failures() as failure:
-        fault = fault_of_machine(failure, entrant.agent, entrant.mode)
+        fault = fault_of_machine(failure, entrant.agent, mode)
         if fault is not None:
             raise fault from failure
         seat = Seat(None, env.formats[k], care, SIDES[k])

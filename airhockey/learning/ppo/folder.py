@@ -13,8 +13,8 @@ import yaml
 from airhockey.agents.atacom.network import Network
 from airhockey.agents.learned.player import NETWORK, POLICY
 from airhockey.agents.packaging.metadata import METADATA
-from airhockey.envs.editions import edition
-from airhockey.evaluator.runs.disk import disk_errors, replace_file
+from airhockey.envs.editions import DEFAULT, edition
+from airhockey.evaluator.runs.disk import replace_file
 from airhockey.learning.ppo.records import Settings
 from airhockey.learning.sac.folder import SkillFolder
 
@@ -40,16 +40,15 @@ class PolicyFolder(SkillFolder):
     def save_network(self, network: Network) -> None:
         """The submission, each of its files whole or not at all; the builder last, which makes it one."""
         options: Any = self.manifest.options
-        horizon = edition("2023").horizon.task
+        horizon = edition(DEFAULT).horizon.task
         policy = {"actions": options.actions, "repeat": options.repeat, "horizon": horizon, "task": options.task}
         metadata = {
             "name": f"ppo-{options.task}-{options.actions}", "version": "0.1.0", "authors": [], "packages": [],
             "interpolation_order": 3, "tasks": [options.task],
         }  # fmt: skip
         package = self.path / PACKAGE
-        with disk_errors(self.path):
-            package.mkdir(exist_ok=True)
-            replace_file(package / NETWORK, network.as_bytes())
-            replace_file(package / POLICY, yaml.safe_dump(policy, sort_keys=False).encode())
-            replace_file(package / METADATA, yaml.safe_dump(metadata, sort_keys=False).encode())
-            replace_file(package / BUILDER, _BUILDER.encode())
+        package.mkdir(exist_ok=True)
+        replace_file(package / NETWORK, network.as_bytes())
+        replace_file(package / POLICY, yaml.safe_dump(policy, sort_keys=False).encode())
+        replace_file(package / METADATA, yaml.safe_dump(metadata, sort_keys=False).encode())
+        replace_file(package / BUILDER, _BUILDER.encode())

@@ -113,7 +113,6 @@ class Trainer:
             "torch": torch.get_rng_state(),
             "numpy": np.random.get_state(),
         }
-        self._folder.save_network(self.network)
         self._folder.save(state, self.network)
 
     def _restore(self, state: dict[str, Any]) -> None:

@@ -67,7 +67,11 @@ class SkillFolder(RunFolder[Any, Any]):
             log = self.path / LOG
             state = {**state, "log": log.stat().st_size if log.exists() else 0}
             replace_file(self.path / CHECKPOINT, pickle.dumps(state, protocol=5))
-            replace_file(self.path / NETWORK, network.as_bytes())
+            self.save_network(network)
+
+    def save_network(self, network: Network) -> None:
+        """The policy, as a player reads it."""
+        replace_file(self.path / NETWORK, network.as_bytes())
 
     def load(self) -> dict[str, Any] | None:
         """The last checkpoint, or None before the first; what the log says of later episodes is cut off."""

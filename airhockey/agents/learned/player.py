@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 from numpy.typing import NDArray
 
 from airhockey.agents.atacom.network import Network
@@ -16,6 +15,8 @@ from airhockey.agents.learned import features as learned_features
 from airhockey.agents.learned.actions import ACTIONS, Controls, command, new_controls, take_position
 from airhockey.agents.learned.features import Sights, new_sights, see, width_of, write
 from airhockey.errors import ConfigurationError
+from airhockey.inputs.broken import reading_errors
+from airhockey.inputs.plain_yaml import read_yaml
 
 Array = NDArray[np.float64]
 
@@ -69,12 +70,9 @@ class LearnedPlayer(AgentBase):
         Raises:
             ConfigurationError: A file is missing or holds something else.
         """
-        network = Network.load(folder / NETWORK)
-        try:
-            policy = yaml.safe_load((folder / POLICY).read_text(encoding="utf-8"))
+        network, policy = Network.load(folder / NETWORK), read_yaml(folder / POLICY)
+        with reading_errors(folder / POLICY):
             actions, repeat, horizon = str(policy["actions"]), int(policy["repeat"]), int(policy["horizon"])
-        except (OSError, ValueError, KeyError, TypeError, yaml.YAMLError) as error:
-            raise ConfigurationError(f"cannot read the policy {str(folder / POLICY)!r}: {error}") from error
         return cls(env_info, network, actions, repeat, horizon, **kwargs)
 
     def _compile(self) -> None:

@@ -11,7 +11,6 @@ A page shows it between `<!-- figure NAME -->` and `<!-- end -->`. A test compar
 
 import argparse
 import datetime
-import importlib.metadata
 import json
 import os
 import platform
@@ -23,6 +22,9 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+
+from airhockey import envs
+from airhockey.evaluator.judging.tasks import wilson_interval
 
 ROOT = Path(__file__).resolve().parent.parent
 FILES = ROOT / "docs" / "figures"
@@ -79,7 +81,7 @@ def measure(names: list[str], episodes: int) -> None:
             print(f"{name} {number}/{len(commands)}: {command}", file=sys.stderr, flush=True)
             runs.append({"command": command, "printed": run(command)})
         FILES.mkdir(exist_ok=True)
-        kept = {"measured": str(datetime.date.today()), "machine": machine(), "versions": versions(), "runs": runs}
+        kept = {"measured": str(datetime.date.today()), "machine": machine(), "versions": envs.versions(), "runs": runs}
         file = FILES / f"{name}.json"
         file.with_suffix(".new").write_text(json.dumps(kept, indent=1) + "\n")
         file.with_suffix(".new").replace(file)
@@ -101,12 +103,6 @@ def machine() -> str:
     return f"{len(os.sched_getaffinity(0))} cores of {model[1] if model else platform.machine()}"
 
 
-def versions() -> dict[str, str]:
-    """Of what decides a result."""
-    names = ("airhockey", "mujoco", "numpy", "numba")
-    return {"python": platform.python_version(), **{name: importlib.metadata.version(name) for name in names}}
-
-
 def shown(name: str, kept: Printed) -> str:
     """A figure as Markdown."""
     runs = kept["runs"]
@@ -123,9 +119,6 @@ def shown(name: str, kept: Printed) -> str:
 
 def task_table(runs: list[Printed]) -> str:
     """Success, penalty and time of every evaluation."""
-    sys.path.insert(0, str(ROOT))
-    from airhockey.evaluator.judging.tasks import wilson_interval
-
     rows = [
         "| agent | disturbances | task | episodes | success (95 % interval) | penalty points | class "
         "| `draw_action` mean / p99 / max |",

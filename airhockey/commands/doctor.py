@@ -1,7 +1,6 @@
 """`hockey doctor`: what works on this machine, and what to install for the rest."""
 
 import importlib.metadata
-import importlib.util
 import json
 import os
 import re
@@ -11,8 +10,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import click as plain_click
 import rich_click as click
+
+from airhockey.inputs.packages import is_installed
 
 EXTRAS = {
     "rl": "Gymnasium and PettingZoo, training by SAC",
@@ -45,7 +45,8 @@ class Finding:
 
 @click.command()
 @click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON.")
-def doctor(as_json: bool) -> None:
+@click.pass_context
+def doctor(ctx: click.RichContext, /, as_json: bool) -> None:
     """Say what works on this machine, and what to install for the rest.
 
     \b
@@ -62,15 +63,16 @@ def doctor(as_json: bool) -> None:
     if as_json:
         click.echo(json.dumps([asdict(finding) for finding in findings], indent=2))
     if any(finding.works is False for finding in findings if finding.about == "simulation"):
-        raise plain_click.exceptions.Exit(1)
+        ctx.exit(1)
 
 
 def examine() -> Iterator[Finding]:
     """One finding after the other: some take a second or two."""
     yield Finding(about="machine", works=None, told=_machine())
     yield Finding(about="versions", works=None, told=_versions())
-    yield _simulation()
-    yield _compiled()
+    yield (simulation := _simulation())
+    if simulation.works:
+        yield _compiled()
     yield _rendering()
     yield _sandbox()
     for extra, purpose in EXTRAS.items():
@@ -83,18 +85,20 @@ def _machine() -> str:
 
 
 def _versions() -> str:
-    names = ("airhockey", "mujoco", "numpy", "numba")
-    return ", ".join(
-        [f"Python {sys.version.split()[0]}", *(f"{name} {importlib.metadata.version(name)}" for name in names)]
-    )
+    from airhockey import envs
+
+    return ", ".join(f"{name} {version}" for name, version in envs.versions().items())
 
 
 def _simulation() -> Finding:
     from airhockey import envs
+    from airhockey.errors import AirHockeyError
 
     try:
         env = envs.make("3dof-hit")
         env.reset(seed=0)
+    except AirHockeyError as error:
+        return Finding(about="simulation", works=False, told=str(error))  # which names its remedy
     except Exception as error:  # whatever it is: this is what is asked
         remedy = "install the versions that the package asks for: pip install --force-reinstall airhockey"
         return Finding(about="simulation", works=False, told=f"{type(error).__name__}: {error}", remedy=remedy)
@@ -103,14 +107,16 @@ def _simulation() -> Finding:
 
 def _compiled() -> Finding:
     from airhockey.agents.compiling import CACHE
+    from airhockey.envs.compiled import is_kept
 
-    files = len(list(Path(CACHE).rglob("*.nbc"))) if Path(CACHE).is_dir() else 0
-    if not os.access(next(place for place in (Path(CACHE), *Path(CACHE).parents) if place.exists()), os.W_OK):
-        remedy = "name a folder that can be written in XDG_CACHE_HOME, or players are compiled anew in every run"
-        return Finding(about="compiled code", works=False, told=f"{CACHE} cannot be written", remedy=remedy)
-    told = f"{files} functions of players are compiled in {CACHE}" if files else (
-        f"no player is compiled yet: the first game takes a minute longer; it is then kept in {CACHE}"
-    )  # fmt: skip
+    if not is_kept():
+        remedy = "name a folder that can be written in XDG_CACHE_HOME"
+        told = "no folder for it can be written: players are compiled anew in every run, which takes a minute"
+        return Finding(about="compiled code", works=False, told=told, remedy=remedy)
+    files = sum(1 for _ in Path(CACHE).rglob("*.nbc"))
+    told = f"{files} functions of players are kept in {CACHE}"
+    if not files:
+        told = f"no player is compiled yet: the first game takes a minute longer; it is then kept in {CACHE}"
     return Finding(about="compiled code", works=True, told=told)
 
 
@@ -135,7 +141,7 @@ def _sandbox() -> Finding:
 
 
 def _extra(extra: str, purpose: str) -> Finding:
-    missing = [name for name in _packages(extra) if not _is_installed(name)]
+    missing = [name for name in _packages(extra) if not is_installed(name)]
     about = f"extra {extra}"
     if not missing:
         return Finding(about=about, works=True, told=purpose)
@@ -151,14 +157,6 @@ def _packages(extra: str) -> list[str]:
     """Names of the packages of an extra, from the metadata of the installed package."""
     asked = (_REQUIREMENT.match(line) for line in importlib.metadata.requires("airhockey") or [])
     return [found["name"] for found in asked if found is not None and found["extra"] == extra]
-
-
-def _is_installed(name: str) -> bool:
-    try:
-        importlib.metadata.version(name)
-    except importlib.metadata.PackageNotFoundError:
-        return False
-    return True
 
 
 def _print(finding: Finding) -> None:

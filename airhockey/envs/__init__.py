@@ -13,7 +13,7 @@ import importlib.metadata
 import platform
 from typing import TYPE_CHECKING, Any
 
-from airhockey.envs.display import put_aside_what_does_not_work
+from airhockey.envs.rendering.mujoco_gl import put_aside_what_does_not_work
 from airhockey.lazy import attribute
 
 if TYPE_CHECKING:

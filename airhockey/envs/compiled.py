@@ -7,7 +7,7 @@ the fingerprint of their cache (`airhockey.envs.compiling`).
 import pathlib
 
 from airhockey.envs import specs
-from airhockey.envs.compiling import cache_folder, compiler
+from airhockey.envs.compiling import cache_folder, compiler, is_kept
 from airhockey.envs.kernel import chain
 from airhockey.envs.kernel.chain import SerialChain, forward_kinematics, point_jacobian
 from airhockey.envs.kernel.constraints import MAX_END_EFFECTOR_Y, MIN_END_EFFECTOR_X
@@ -23,6 +23,7 @@ __all__ = [
     "compiler",
     "forward_kinematics",
     "inverse_kinematics",
+    "is_kept",
     "pack",
     "point_jacobian",
     "view",

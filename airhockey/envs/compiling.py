@@ -54,8 +54,7 @@ def compiler(home: pathlib.Path, sources: Iterable[pathlib.Path], **options: Any
 
 def cache_folder(home: pathlib.Path, sources: Iterable[pathlib.Path]) -> str:
     """Where the compiled code of a group is kept; see `compiler`."""
-    fingerprint = hashlib.sha256(b"\0".join(source.read_bytes() for source in sorted(sources))).hexdigest()[:16]
-    name = f"compiled-{fingerprint}"
+    name = f"compiled-{_fingerprint(tuple(sorted(sources)))}"
     if numba.config.CACHE_DIR:
         return str(pathlib.Path(numba.config.CACHE_DIR) / name)
     beside = home / "__pycache__" / name
@@ -65,6 +64,17 @@ def cache_folder(home: pathlib.Path, sources: Iterable[pathlib.Path]) -> str:
         return str(beside)
     own = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "airhockey" / name
     return str(own) if _can_write(own) else str(pathlib.Path(_passing_cache()) / name)
+
+
+@functools.cache
+def _fingerprint(sources: tuple[pathlib.Path, ...]) -> str:
+    """Of what the sources were when this process first asked: several decorators of a group ask, at every start."""
+    return hashlib.sha256(b"\0".join(source.read_bytes() for source in sources)).hexdigest()[:16]
+
+
+def is_kept() -> bool:
+    """Whether other processes will find what is compiled here."""
+    return _PASSING not in os.environ
 
 
 def _can_write(folder: pathlib.Path) -> bool:

@@ -3,5 +3,6 @@
 plain_yaml.py   the only reader of YAML
 names.py        how a stranger's text is shown
 hashing.py      files, folders and archives, known by their content
+packages.py     what is installed beside us
 temporary_folders.py    where archives are unpacked: gone with the process
 """

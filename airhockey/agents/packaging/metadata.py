@@ -1,6 +1,5 @@
 """`submission.yaml`: who made a submission, what it plays, and what it needs."""
 
-import importlib.metadata
 import os
 import re
 from pathlib import Path
@@ -13,6 +12,7 @@ from airhockey.envs.editions import edition
 from airhockey.errors import ConfigurationError, unknown
 from airhockey.inputs import plain_yaml
 from airhockey.inputs.names import shown
+from airhockey.inputs.packages import is_installed
 
 METADATA = "submission.yaml"
 _NAME = re.compile(r"[a-z0-9][a-z0-9_.-]{0,63}")
@@ -131,10 +131,4 @@ def read_metadata(folder: Path) -> Metadata | None:
 
 def _is_installed(requirement: str) -> bool:
     match = _REQUIREMENT.fullmatch(requirement)
-    if match is None:
-        return False
-    try:
-        importlib.metadata.version(match[1])
-    except importlib.metadata.PackageNotFoundError:
-        return False
-    return True
+    return match is not None and is_installed(match[1])

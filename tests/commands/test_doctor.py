@@ -2,6 +2,9 @@
 
 import importlib.metadata
 import json
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -54,3 +57,15 @@ def test_people_get_lines() -> None:
     assert ran.exit_code == 0
     assert all(len(line) < 400 for line in ran.output.splitlines())
     assert "simulation" in ran.output
+
+
+def test_a_compiler_that_is_disabled_is_reported(tmp_path: Path) -> None:
+    told = subprocess.run(
+        [sys.executable, "-P", "-m", "airhockey.cli", "doctor", "--json"],
+        env=os.environ | {"NUMBA_DISABLE_JIT": "1"}, cwd=tmp_path, capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert told.returncode == 1, told.stderr
+    assert "Traceback" not in told.stderr
+    simulation = next(finding for finding in json.loads(told.stdout) if finding["about"] == "simulation")
+    assert not simulation["works"]
+    assert "unset NUMBA_DISABLE_JIT" in simulation["told"]

@@ -29,7 +29,7 @@ except ImportError as error:
 from airhockey.envs.copying import Copyable
 from airhockey.envs.editions import edition as rules
 from airhockey.envs.environment import Environment, Order
-from airhockey.envs.rendering.render import FRAMES_PER_SECOND, MODES, Renderer
+from airhockey.envs.rendering.render import FRAMES_PER_SECOND, MODES, Rendered
 from airhockey.envs.tasks.reward import RewardedState
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ TASKS = {
 }
 
 
-class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
+class AirHockeyEnv(Copyable, Rendered, gymnasium.Env[Array, Array]):
     """One of the challenge's tasks; `airhockey.envs.Environment` says what an observation and an action are.
 
     An observation's space is unbounded: joints overshoot and noise reaches beyond any limit. `info` holds `success`
@@ -80,8 +80,7 @@ class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
         height: int = 360,
     ) -> None:
         self.environment = Environment(name, interpolation_order, disturbances, edition)
-        self.render_mode = render_mode
-        self._renderer = Renderer(name, edition, render_mode, width, height)
+        self._can_be_looked_at(name, edition, render_mode, width, height)
         seen = self.environment.env_info["rl_info"].observation_space.shape
         self.observation_space = spaces.Box(-np.inf, np.inf, seen, np.float64)
         low, high = self.environment.formats[0].limits(self.environment.simulation.robot)
@@ -118,20 +117,12 @@ class AirHockeyEnv(Copyable, gymnasium.Env[Array, Array]):
         return observation, reward, absorbing, truncated, info | {"is_success": bool(info["success"])}
 
     def render(self) -> Any:
-        """The present moment: an array of shape (height, width, 3) for "rgb_array"; "human" shows every step by itself."""
+        """The present moment; see `airhockey.envs.rendering.render.Rendered.render`."""
         if self.render_mode is None:
             gymnasium.logger.warn(
                 'render() shows nothing: make the environment with render_mode="rgb_array" or "human"'
             )
-        return self._renderer.render(self.environment.simulation.data)
-
-    def close(self) -> None:
-        """Close what `render` opened."""
-        self._renderer.close()
-
-    def _show(self) -> None:
-        if self.render_mode == "human":
-            self._renderer.render(self.environment.simulation.data)
+        return super().render()
 
     def get_state(self) -> RewardedState:
         """The present moment; see `airhockey.envs.Environment.get_state`. A reward of this package is part of it."""

@@ -24,7 +24,7 @@ except ImportError as error:
 from airhockey.envs.actions import ActionFormat
 from airhockey.envs.copying import Copyable
 from airhockey.envs.environment import Environment, Order
-from airhockey.envs.rendering.render import FRAMES_PER_SECOND, MODES, Renderer
+from airhockey.envs.rendering.render import FRAMES_PER_SECOND, MODES, Rendered
 from airhockey.envs.tasks.game import points_reward
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ IDS = {"2023": "airhockey/tournament-v0", "2025": "airhockey2025/tournament-v0"}
 PLAYERS = ("home", "away")
 
 
-class TournamentEnv(Copyable, pettingzoo.ParallelEnv[str, Array, Array]):
+class TournamentEnv(Copyable, Rendered, pettingzoo.ParallelEnv[str, Array, Array]):
     """A whole game, 45,000 control steps: every point, fault or stuck puck is followed by the next serve.
 
     Each player sees the table from its own side; see `airhockey.envs.Environment`. The reward is +1 for a point and −1 for
@@ -68,8 +68,7 @@ class TournamentEnv(Copyable, pettingzoo.ParallelEnv[str, Array, Array]):
         self.environment = Environment("tournament", interpolation_order, disturbances, edition)
         self.possible_agents = list(PLAYERS)
         self.agents: list[str] = []
-        self.render_mode = render_mode
-        self._renderer = Renderer("tournament", edition, render_mode, width, height)
+        self._can_be_looked_at("tournament", edition, render_mode, width, height)
         self._step, self._score = 0, [0, 0]
         self._steps = self.environment.horizon if max_cycles is None else max_cycles
         seen = self.environment.env_info["rl_info"].observation_space.shape
@@ -127,18 +126,6 @@ class TournamentEnv(Copyable, pettingzoo.ParallelEnv[str, Array, Array]):
     def state(self) -> Array:
         """What is true of both players, without noise: the base observation, in world coordinates."""
         return self.environment.base_observation
-
-    def render(self) -> Any:
-        """The present moment: an array of shape (height, width, 3) for "rgb_array"; "human" shows every step by itself."""
-        return self._renderer.render(self.environment.simulation.data)
-
-    def close(self) -> None:
-        """Close what `render` opened."""
-        self._renderer.close()
-
-    def _show(self) -> None:
-        if self.render_mode == "human":
-            self._renderer.render(self.environment.simulation.data)
 
     def get_state(self) -> tuple[Any, ...]:
         """The present moment; see `airhockey.envs.Environment.get_state`."""

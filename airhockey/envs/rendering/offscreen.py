@@ -10,7 +10,7 @@ import subprocess
 import sys
 from typing import Any
 
-from airhockey.envs.display import asked_for
+from airhockey.envs.rendering.mujoco_gl import asked_for
 from airhockey.errors import MissingDependencyError, unknown
 
 BACKENDS = ("egl", "osmesa")

@@ -2,7 +2,7 @@
 
 import sys
 import time
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +11,43 @@ from airhockey.envs.rendering.display import has_display, needs_studio
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.errors import ConfigurationError
 
+if TYPE_CHECKING:
+    from airhockey.envs.environment import Environment
+
 MODES = ("human", "rgb_array")
 """Live, at the pace of a real robot; or an array, as fast as it can be drawn."""
 FRAMES_PER_SECOND = round(1.0 / CONTROL_PERIOD)
 _HOST = "127.0.0.1"
+
+
+class Rendered:
+    """What the Gymnasium and PettingZoo environments have for being looked at.
+
+    Attributes:
+        environment: The challenge environment behind it.
+        render_mode: One of `MODES`, or None where nothing is shown.
+    """
+
+    environment: "Environment"
+    render_mode: str | None
+
+    def _can_be_looked_at(self, name: str, edition: str, mode: str | None, width: int, height: int) -> None:
+        """To be called once by `__init__`, with the arguments of `Renderer`."""
+        self.render_mode = mode
+        self._renderer = Renderer(name, edition, mode, width, height)
+
+    def render(self) -> Any:
+        """The present moment: an array of shape (height, width, 3) for "rgb_array"; "human" shows every step by itself."""
+        return self._renderer.render(self.environment.simulation.data)
+
+    def close(self) -> None:
+        """Close what `render` opened."""
+        self._renderer.close()
+
+    def _show(self) -> None:
+        """After every step and reset."""
+        if self.render_mode == "human":
+            self.render()
 
 
 class Renderer:

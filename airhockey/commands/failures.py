@@ -2,8 +2,14 @@
 
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import rich_click as click
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from airhockey.evaluator.analysis.failures import Failure
 
 MOST = 20
 
@@ -22,13 +28,13 @@ def failures(run: Path, everything: bool, as_json: bool) -> None:
     hockey video runs/7dof-hit-planner-s0 --failed -o failed.mp4
     """
     import msgspec
-    from rich.table import Table
 
     from airhockey.commands._session import MOST_NOTES, say_notes
     from airhockey.commands._tables import output
     from airhockey.errors import ConfigurationError
     from airhockey.evaluator.analysis import failures as analysis
     from airhockey.evaluator.runs.reader import Run, open_source
+    from airhockey.inputs.names import markup
 
     source = open_source(run)
     if not isinstance(source, Run):
@@ -39,29 +45,36 @@ def failures(run: Path, everything: bool, as_json: bool) -> None:
         raise ConfigurationError(f"there are no episodes in {str(run)!r}: {why}")
     say_notes(source.notes, MOST_NOTES)
     found = analysis.failures(source)
+    listed = found if everything or as_json else found[:MOST]
+    described = [analysis.described(source, record) for record in listed]
     if as_json:
-        click.echo(json.dumps(msgspec.to_builtins(found), indent=2))
+        click.echo(json.dumps(msgspec.to_builtins(described), indent=2))
         return
     console = output()
     console.print(f"{len(found)} of {len(source.records)} episodes went wrong")
     for env, cause, number in analysis.by_cause(found):
-        console.print(f"  {number:5}  {env}: {cause}", markup=False)
+        console.print(f"  {number:5}  {markup(f'{env}: {cause}')}")
     if not found:
         return
-    table = Table("episode", "puck at", "with", "lasted", "what", title=None)
-    several = len(source.environments) > 1
-    shown = found if everything else found[:MOST]
-    for failure in shown:
-        name = f"{failure.env}/{failure.index}" if several else str(failure.index)
-        x, y, x_speed, y_speed = failure.start or (None,) * 4
-        table.add_row(
-            name,
-            "–" if x is None else f"({x:.2f}, {y:+.2f}) m",
-            "–" if x is None else f"({x_speed:+.2f}, {y_speed:+.2f}) m/s",
-            f"{failure.seconds:.2f} s",
-            ", ".join(failure.causes) + (f" ({failure.told[:100]})" if failure.told else ""),
-        )
-    console.print(table)
-    if len(shown) < len(found):
-        console.print(f"and {len(found) - len(shown)} more (--all)")
+    console.print(_table(described, several=len(source.environments) > 1))
+    if len(listed) < len(found):
+        console.print(f"and {len(found) - len(listed)} more (--all)")
     console.print(f"look at them: hockey replay {run} --failed", markup=False)
+
+
+def _table(described: "list[Failure]", several: bool) -> "Table":
+    """A row for each; what stands in a folder may be a stranger's text."""
+    from rich.table import Table
+
+    from airhockey.inputs.names import markup
+
+    table = Table("episode", "puck at", "with", "lasted", "what")
+    for failure in described:
+        where = how = "–"
+        if failure.start is not None:
+            x, y, x_speed, y_speed = failure.start
+            where, how = f"({x:.2f}, {y:+.2f}) m", f"({x_speed:+.2f}, {y_speed:+.2f}) m/s"
+        what = ", ".join(failure.causes) + (f" ({failure.told[:100]})" if failure.told else "")
+        name = f"{failure.env}/{failure.index}" if several else str(failure.index)
+        table.add_row(markup(name), where, how, f"{failure.seconds:.2f} s", markup(what))
+    return table

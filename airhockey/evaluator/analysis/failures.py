@@ -44,28 +44,27 @@ def causes_of(record: EpisodeRecord) -> tuple[str, ...]:
     return (ENDED if record.absorbing else TIME_IS_UP, *violated)
 
 
-def failures(run: Run) -> list[Failure]:
-    """Every episode of a run that went wrong, in the run's order."""
-    found = []
-    for record in (record for env in run.environments for record in run.of(env)):
-        if causes := causes_of(record):
-            found.append(
-                Failure(
-                    env=record.env,
-                    index=record.index,
-                    causes=causes,
-                    told=record.error,
-                    seconds=record.steps * CONTROL_PERIOD,
-                    start=_start(run, record),
-                )
-            )
-    return found
+def failures(run: Run) -> list[EpisodeRecord]:
+    """The records of all episodes that went wrong, in the run's order."""
+    return [record for env in run.environments for record in run.of(env) if causes_of(record)]
 
 
-def by_cause(found: list[Failure]) -> list[tuple[str, str, int]]:
+def by_cause(found: list[EpisodeRecord]) -> list[tuple[str, str, int]]:
     """Environment, cause and number of episodes, the most frequent first."""
-    counts = Counter((failure.env, cause) for failure in found for cause in failure.causes)
+    counts = Counter((record.env, cause) for record in found for cause in causes_of(record))
     return [(env, cause, number) for (env, cause), number in counts.most_common()]
+
+
+def described(run: Run, record: EpisodeRecord) -> Failure:
+    """One of them with its start, for which its trajectory is read."""
+    return Failure(
+        env=record.env,
+        index=record.index,
+        causes=causes_of(record),
+        told=record.error,
+        seconds=record.steps * CONTROL_PERIOD,
+        start=_start(run, record),
+    )
 
 
 def _start(run: Run, record: EpisodeRecord) -> tuple[float, float, float, float] | None:

@@ -12,7 +12,7 @@ from airhockey.envs.specs import JOINTS
 from airhockey.envs.tasks.verdicts import GOING_ON
 from airhockey.envs.tasks.verdicts import SUCCESS as SUCCEEDED
 from airhockey.envs.vector.stepping import DONE, Fleet, next_of, step_one
-from airhockey.learning.envs.compiling import compiled
+from airhockey.learning.envs.compiling import compiled, inlined
 from airhockey.learning.envs.rewards import FAILURE, SUCCESS, potential
 
 Array = NDArray[np.float64]
@@ -74,7 +74,7 @@ def play_many(fleet: Fleet, learner: Learner, chosen: Array, seen: Features, cou
         play_one(fleet, learner, i, chosen[i], seen[i])
 
 
-@compiled
+@inlined
 def play_one(fleet: Fleet, learner: Learner, i: int, action: Array, written: Features) -> None:
     """Let an action last for `repeat` control steps, or less where the episode ends."""
     ended = success = False
@@ -84,7 +84,7 @@ def play_one(fleet: Fleet, learner: Learner, i: int, action: Array, written: Fea
             return
         learner.steps[i] += 1
         _count_violation(learner, i, fleet.left[i])
-        see(learner.sights, learner.controls, i, learner.raw[i], False)
+        see(learner.sights, learner.controls, i, learner.raw[i], learner.steps[i] == 0)
         verdict = fleet.verdicts[i]
         success = verdict >= SUCCEEDED
         ended = verdict % SUCCEEDED != GOING_ON or learner.steps[i] >= learner.horizon
@@ -107,7 +107,7 @@ def begin_one(fleet: Fleet, learner: Learner, i: int, written: Features) -> None
     """Begin an episode from the environment's own first observation."""
     n = learner.controls.q.shape[1]
     take_position(learner.controls, i, learner.raw[i, JOINTS : JOINTS + n])
-    see(learner.sights, learner.controls, i, learner.raw[i], True)
+    see(learner.sights, learner.controls, i, learner.raw[i], learner.steps[i] == 0)
     learner.potential[i] = _potential(fleet, learner, i)
     if written.size > 0:
         write(learner.sights, learner.controls, i, 1.0, written)
@@ -118,7 +118,7 @@ def _potential(fleet: Fleet, learner: Learner, i: int) -> float:
     return potential(fleet.kind, learner.sights.puck[i, 0], learner.controls.tip[i], learner.sights.constants)
 
 
-@compiled
+@inlined
 def _count_violation(learner: Learner, i: int, left: Array) -> None:
     learner.played[i] += 1
     for k in range(learner.constraints[0], learner.constraints[1]):

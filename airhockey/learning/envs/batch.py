@@ -97,9 +97,15 @@ class LearningBatch(VectorEnvironment):
         return batch._replace(observations=seen[0], final_observations=seen[1])
 
     def _prepare(self) -> None:
-        single, n = self.single, self.num_envs
+        single = self.single
         if single.n_players == 2:
-            raise ConfigurationError(f"{single.name} has two players; a learner's batch is of a task with one")
+            raise ConfigurationError(
+                f"{single.name} has two players; a learner's batch is of a task with one (games: `learning.envs.game`)"
+            )
+        self._prepare_learner()
+
+    def _prepare_learner(self) -> None:
+        single, n = self.single, self.num_envs
         actions, observations, reward, repeat, discount = self._choice
         controls = new_controls(actions, spec_of(single.env_info), n)
         joints = actions == "joints"

@@ -72,6 +72,9 @@ class GameBatch(LearningBatch):
         terms: Of the latest step: term → 1 where it happened. Shapes (N,).
     """
 
+    opponents: list[Any]
+    _next: list[AgentBase | None]
+
     def __init__(
         self,
         num_envs: int,
@@ -122,8 +125,7 @@ class GameBatch(LearningBatch):
         self._prepare_learner()
         self._width = self.learner.raw.shape[1] // 2
         self.terms = {name: np.zeros(n) for name in TERMS}
-        self.opponents: list[Any] = [None] * n
-        self._next: list[AgentBase | None] = [None] * n
+        self.opponents, self._next = [None] * n, [None] * n
         for i in range(n):
             self.replace_opponent(i, self._names[i % len(self._names)])
 

@@ -106,11 +106,11 @@ def _reward(fleet: Fleet, learner: Learner, i: int, ended: bool, success: bool) 
     if learner.reward == SHAPED:
         before = learner.potential[i]
         learner.potential[i] = 0.0 if ended else _potential(fleet, learner, i)
-        return own + learner.discount * learner.potential[i] - before
+        return float(own + learner.discount * learner.potential[i] - before)
     if learner.reward == PROGRESS:
         best = learner.best[i]
         learner.best[i] = max(best, _potential(fleet, learner, i))
-        return own + learner.best[i] - best
+        return float(own + learner.best[i] - best)
     return 1.0 if ended and success else 0.0
 
 

@@ -181,7 +181,7 @@ def outcomes(asked: Settings, jobs, start=TUNED):
     from airhockey import envs
     from airhockey.envs.disturbances import load_disturbances
     from airhockey.learning.pgpe.records import PgpeManifest
-    from airhockey.learning.pgpe.trainable import plain
+    from airhockey.agents.settings import plain
 
     profile = load_disturbances(asked.disturbances)
     manifest = PgpeManifest(

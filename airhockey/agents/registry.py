@@ -83,6 +83,12 @@ AGENTS: dict[str, AgentEntry] = {
             RULES,
         ),
         AgentEntry(
+            "ordinary",
+            "an opponent in the style of the official baseline: meets pucks on a line, foresees no bounce, shoots straight",
+            EVERY_ENVIRONMENT,
+            "airhockey.agents.ordinary.agent:OrdinaryAgent",
+        ),
+        AgentEntry(
             "planner",
             "planning: predicts the puck and chooses among smash, defend, repel, prepare and ready",
             EVERY_ENVIRONMENT,

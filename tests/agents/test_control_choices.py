@@ -7,9 +7,9 @@ from airhockey import envs
 from airhockey.agents import build_agent
 from airhockey.agents.control.kinematics import ArmKinematics
 from airhockey.agents.control.parameters import control_parameters
-from airhockey.agents.settings import settings_in_use
 from airhockey.agents.control.pinocchio_model import PinocchioKinematics
 from airhockey.agents.registry import AGENTS
+from airhockey.agents.settings import settings_in_use
 from airhockey.envs.specs import IIWA, PLANAR
 from airhockey.errors import ConfigurationError, MissingDependencyError
 

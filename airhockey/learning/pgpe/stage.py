@@ -111,8 +111,11 @@ class Stage:
         if not fixed:
             return observation
         state = self.env.base_observation
+        rows, start = (
+            one.reshape(self.env.n_agents, -1) for one in (state, self._start)
+        )  # every robot's holds the puck
         for part in fixed:
-            state[part] = self._start[part]
+            rows[:, part] = start[:, part]
         return self.env.reset(state=state)
 
     def accomplished(self) -> bool:

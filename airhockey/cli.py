@@ -33,6 +33,7 @@ class LazyGroup(click.RichGroup):
         "leaderboard",
         "train",
         "plot",
+        "reproduce",
         "agents",
         "new",
         "validate",

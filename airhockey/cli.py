@@ -26,6 +26,7 @@ class LazyGroup(click.RichGroup):
         "match",
         "tournament",
         "watch",
+        "play",
         "replay",
         "video",
         "failures",

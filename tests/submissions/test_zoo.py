@@ -184,7 +184,9 @@ time.sleep(1000)"""
 
 
 def test_a_pipe_that_it_filled_keeps_nobody_waiting(env: Any, bad: Callable[..., str]) -> None:
-    ends(bad(FILLING), env, "process", AgentError, "filled the pipe")  # in a sandbox of root's the pipe is another user's
+    ends(
+        bad(FILLING), env, "process", AgentError, "filled the pipe"
+    )  # in a sandbox of root's the pipe is another user's
 
 
 def test_a_message_to_the_evaluator_is_data(env: Any, sandbox: None, bad: Callable[..., str]) -> None:

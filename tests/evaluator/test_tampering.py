@@ -14,6 +14,7 @@ from airhockey.evaluator import evaluation
 from airhockey.evaluator.match import MatchOptions, begin_match, play_match, resume_match
 from airhockey.evaluator.runs.game_records import GameOptions
 from airhockey.evaluator.runs.records import Options
+from airhockey.inputs.hashing import content_hash
 
 HOLDING = MatchOptions(home="hold", away="hold", games=2, game=GameOptions(steps=60))
 PROFILE = "profile: mine\ndelay: 1\n"
@@ -52,7 +53,7 @@ def write(path: Path, records: list[Any]) -> None:
         lambda manifest: manifest["options"].update(seed=1),
         lambda manifest: manifest["options"].update(home="planner"),
         lambda manifest: manifest["profile"].update(delay=3),
-        lambda manifest: manifest["inputs"].update({"/agent": "0" * 64}),
+        lambda manifest: manifest["inputs"].update({__file__: content_hash(__file__)}),
     ],
 )
 def test_an_edited_manifest_is_refused(copy: Path, change: Callable[[Any], None]) -> None:

@@ -68,11 +68,11 @@ class RunFolder(NotCopyable, Generic[Options, Record]):
         with self.released_on_error():
             self.manifest = self.read(path)
             if asked is not None:
-                if self.has_seal:
-                    check_seal(path, self.name, self.manifest)
                 check_same_run(path, self.manifest, asked)
                 check_versions(path, self.manifest.versions, self.versions())
                 check_unchanged(path, self.manifest.inputs)
+                if self.has_seal:
+                    check_seal(path, self.name, self.manifest)
                 self.notes += filter(None, [note_on_profile(path, self.manifest)])
             with disk_errors(path):
                 self.records: list[Record] = self.recover()

@@ -103,11 +103,7 @@ def _problem(action: Any, values: Any) -> str | None:
 def _error_text(failure: BaseException) -> dict[str, str]:
     from airhockey.evaluator.isolation.failures import describe
 
-    try:
-        what = describe(failure)
-    except BaseException:  # an exception whose text raises
-        what = type(failure).__name__
-    return {"what": what.encode("utf-8", "replace").decode()[:1000]}
+    return {"what": describe(failure).encode("utf-8", "replace").decode()[:1000]}
 
 
 def seed(words: list[int] | None) -> None:

@@ -11,6 +11,7 @@ import rich_click as click
 from airhockey import __version__
 from airhockey.commands import HELP_PAGE
 from airhockey.commands._streams import be_patient, leave, silence
+from airhockey.commands._threads import end_with
 from airhockey.errors import AirHockeyError, EnvironmentFault, SimulationError
 from airhockey.inputs.names import one_line
 
@@ -102,6 +103,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if lost is not None:
         complain(f"the standard output could not be written ({lost}); what was played is stored")
         status = status or 1
+    end_with(status)
     sys.exit(status)
 
 

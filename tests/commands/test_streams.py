@@ -80,3 +80,17 @@ threading.Thread(target=threading.Event().wait).start()
 _threads.end_with(3)
 """
     assert subprocess.run([sys.executable, "-c", code], timeout=60).returncode == 3
+
+
+def test_ctrl_c_while_modules_are_imported_is_no_traceback() -> None:
+    code = """
+import sys
+class CtrlC:
+    def find_spec(self, name, *_):
+        if name == "rich.console": raise KeyboardInterrupt
+sys.meta_path.insert(0, CtrlC())
+from airhockey.cli import main
+main()
+"""
+    done = subprocess.run([sys.executable, "-c", code, "agents"], capture_output=True, text=True)
+    assert done.returncode == 130 and done.stderr == ""

@@ -19,6 +19,7 @@ from airhockey.evaluator.isolation.restrict import Restrictions
 def main() -> None:
     """Serve until the evaluator hangs up."""
     requests, replies, descriptor = (int(argument) for argument in sys.argv[1:4])
+    del sys.argv[1:]  # an agent that reads the command line is not to find ours
     memory = Memory(descriptor)
     os.close(descriptor)
     for pipe in (requests, replies):

@@ -1,9 +1,9 @@
 """What to say about a module that a submission imports and that is not there: whose fault it is, and what to do."""
 
 import sys
-from pathlib import Path
 
 from airhockey.agents.packaging.checkout import BUILDER, PACKAGE, Checkout
+from airhockey.agents.packaging.unfetched import empty_submodule
 from airhockey.errors import AirHockeyError, ConfigurationError, MissingDependencyError
 
 CHALLENGE = "air_hockey_challenge"
@@ -52,11 +52,11 @@ def missing_module(checkout: Checkout, error: ModuleNotFoundError) -> AirHockeyE
         return MissingDependencyError(f"{agent} imports {full!r}, which the official package does not have either")
     if name == PACKAGE:
         return ConfigurationError(f"{agent} imports {full!r}, but has no such file")
-    unfetched = _unfetched(checkout.root, full)
+    unfetched = empty_submodule(checkout.root, full)
     if unfetched is not None:
         return ConfigurationError(
-            f"{agent} imports {full!r}, which is in the git submodule {unfetched!r}, whose folder is empty: fetch it with "
-            "git submodule update --init --recursive"
+            f"{agent} imports {full!r}, which is in the git submodule {unfetched!r}, whose folder is empty: git submodule "
+            "update --init --recursive fetches it"
         )
     if "." in full and name in sys.modules:
         return _no_submodule(checkout, agent, full)
@@ -92,18 +92,3 @@ def _no_submodule(checkout: Checkout, agent: str, full: str) -> AirHockeyError:
         f"{agent} imports {full!r}, which {which} does not have: it was written for another version; give it an interpreter of "
         "its own with that one (--python PATH)"
     )
-
-
-def _unfetched(root: Path, full: str) -> str | None:
-    """The submodule of the checkout's repository that a module should lie in and that holds nothing; None where there is none."""
-    try:
-        told = (root / ".gitmodules").read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
-        return None
-    lines = (line.partition("=") for line in told.splitlines())
-    for path in (value.strip() for key, _, value in lines if key.strip() == "path"):
-        parts = Path(path).parts
-        is_inside = full.split(".")[: len(parts)] == list(parts) or full.partition(".")[0] in parts[-1:]
-        if is_inside and not any(file.suffix == ".py" for file in (root / path).glob("**/*")):
-            return path
-    return None

@@ -34,6 +34,7 @@ class LazyGroup(click.RichGroup):
         "leaderboard",
         "train",
         "plot",
+        "reproduce",
         "agents",
         "new",
         "validate",

@@ -1,6 +1,6 @@
 """The manifest: what a run is, written when it begins; whoever takes it up again must mean the same run.
 
-run.json  match.json  tournament.json  train.json
+run.json  match.json  tournament.json  train.json  reproduction.json
 """
 
 import datetime
@@ -17,7 +17,10 @@ from airhockey.errors import ConfigurationError
 Options = TypeVar("Options")
 Kind = TypeVar("Kind", bound="Manifest[Any]")
 RUN, MATCH, TOURNAMENT, TRAINING = "run.json", "match.json", "tournament.json", "train.json"
-KINDS = {RUN: "run", MATCH: "match", TOURNAMENT: "tournament", TRAINING: "training run"}
+REPRODUCTION = "reproduction.json"
+KINDS = {
+    RUN: "run", MATCH: "match", TOURNAMENT: "tournament", TRAINING: "training run", REPRODUCTION: "reproduction"
+}  # fmt: skip
 """A manifest's file name -> what it is the manifest of."""
 
 

@@ -95,6 +95,12 @@ AGENTS: dict[str, AgentEntry] = {
             "airhockey.agents.ordinary.agent:OrdinaryAgent",
         ),
         AgentEntry(
+            "learned",
+            "defend by a network that PPO trained from nothing under constraints (iiwa); the rest as thesis-final",
+            EVERY_ENVIRONMENT,
+            "airhockey.agents.learned.agent:learned_agent",
+        ),
+        AgentEntry(
             "planner",
             "planning: predicts the puck and chooses among smash, defend, repel, prepare and ready",
             EVERY_ENVIRONMENT,

@@ -36,7 +36,6 @@ class LazyGroup(click.RichGroup):
         "train",
         "plot",
         "reproduce",
-        "reproduce",
         "agents",
         "new",
         "validate",

@@ -69,6 +69,12 @@ AGENTS: dict[str, AgentEntry] = {
             "airhockey.agents.hold:HoldAgent",
         ),
         AgentEntry(
+            "person",
+            "you, by mouse or finger, at `hockey play`; where nobody points, it goes home and stays there",
+            EVERY_ENVIRONMENT,
+            "airhockey.agents.person:PersonAgent",
+        ),
+        AgentEntry(
             "thesis",
             "rule-based: hit, defend, prepare, home; switcher and state machine (parameters in YAML)",
             EVERY_ENVIRONMENT,

@@ -14,7 +14,7 @@ _DEFAULTS = {"net_arch": [128, 128], "activation_fn": torch.nn.ReLU, "log_std_in
 
 
 class BoundedMeanPolicy(ActorCriticPolicy):
-    """The mean of an action is within [−1, 1], as the action itself; with SB3's own, unbounded, 7dof-defend did not learn.
+    """The mean of an action is within [−1, 1], as the action itself.
 
     Args:
         given: See `ActorCriticPolicy`; here two layers of 128 rectified units, and actions that deviate by 0.6 at first.

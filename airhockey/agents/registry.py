@@ -69,6 +69,12 @@ AGENTS: dict[str, AgentEntry] = {
             "airhockey.agents.hold:HoldAgent",
         ),
         AgentEntry(
+            "person",
+            "you, by mouse or finger, at `hockey play`; where nobody points, it goes home and stays there",
+            EVERY_ENVIRONMENT,
+            "airhockey.agents.person:PersonAgent",
+        ),
+        AgentEntry(
             "thesis",
             "rule-based: hit, defend, prepare, home; switcher and state machine (parameters in YAML)",
             EVERY_ENVIRONMENT,
@@ -87,6 +93,12 @@ AGENTS: dict[str, AgentEntry] = {
             "an opponent in the style of the official baseline: meets pucks on a line, foresees no bounce, shoots straight",
             EVERY_ENVIRONMENT,
             "airhockey.agents.ordinary.agent:OrdinaryAgent",
+        ),
+        AgentEntry(
+            "learned",
+            "defend by a network that PPO trained from nothing under constraints (iiwa); the rest as thesis-final",
+            EVERY_ENVIRONMENT,
+            "airhockey.agents.learned.agent:learned_agent",
         ),
         AgentEntry(
             "planner",

@@ -27,6 +27,7 @@ class LazyGroup(click.RichGroup):
         "match",
         "tournament",
         "watch",
+        "play",
         "replay",
         "video",
         "failures",

@@ -157,7 +157,11 @@ def test_a_checkout_plays_what_its_configuration_names_on_both_sides(monkeypatch
         ("helper_out_of_reach", ["does not play, because", "training/tactics", "the entry's cause", "mend the import"]),
         ("package_missing", ["does not play, because", "this installation's cause", "what to do: install it"]),
         ("size_one_arrays", ["the libraries' cause", "x.item()", "--python PATH"]),
-        ("template_as_it_was", ["NotImplementedError", "the entry's cause", "name in env what the agent plays"]),
+        pytest.param(
+            "template_as_it_was",
+            ["NotImplementedError", "the entry's cause", "name in env what the agent plays"],
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_one_line_says_why_whose_cause_and_what_to_do(name: str, words: list[str]) -> None:

@@ -85,7 +85,7 @@ def test_what_is_possible_stays_on_the_table_and_within_the_means(goal):
 @pytest.mark.parametrize("place", [(-0.5, 0.42), (-0.3, -0.44), (-0.88, 0.2), (-0.9, -0.4), (-0.92, 0.47)])
 def test_the_stroke_found_brings_the_puck_to_a_good_place(goal, place):
     puck = np.array([*place, 0.0, 0.0, 0.0])
-    push, value = search(puck, Found(np.zeros(LENGTH), -2.0), goal, CONSTANTS, np.random.default_rng(2), 600)
+    push, value, _ = search(puck, Found(np.zeros(LENGTH), -2.0), goal, CONSTANTS, np.random.default_rng(2), 600, 10**6)
     after, out_of_turn = puck_after(puck, push, CONSTANTS, goal.friction, 1.0, goal.middle)
     ended, last = coast(after, CONSTANTS, goal.middle, goal.horizon)
     assert not out_of_turn and value > 1.3 and ended in (0, 1)

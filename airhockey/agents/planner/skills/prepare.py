@@ -128,6 +128,7 @@ class Prepare:
         self._think(12)
         self._think_again()
         self._lies_well(self._puck, 1.0)
+        put_on_table(self._puck, 0.0002)
         mallet_at(self._push, 0, np.float64(0.0))
         self._restart()
 

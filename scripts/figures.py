@@ -67,6 +67,12 @@ FIGURES: dict[str, Callable[[int], list[str]]] = {
     "match-rate": lambda _: ["python benchmarks/match_rate.py"],
     "isolation": lambda _: ["python benchmarks/isolation.py"],
     "copy-rate": lambda _: ["python benchmarks/copy_rate.py"],
+    "learned": lambda episodes: [
+        f"hockey evaluate --agent {player} --env 7dof-defend --disturbances {profile} --episodes {episodes} --seed {SEED} --json"
+        for player in ("learned", "hold")
+        for profile in PROFILES
+    ],
+    "ten-lines": lambda _: [f"python benchmarks/ten_lines.py --seed {seed}" for seed in (0, 1)],
     "vector-rate": lambda _: ["python benchmarks/vector_rate.py"],
 }
 """Name -> its commands, from the number of episodes of each."""

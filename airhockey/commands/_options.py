@@ -104,8 +104,8 @@ settings = click.option(
     "--set",
     "settings",
     multiple=True,
-    metavar="control.NAME=VALUE",
-    help="Change our players' controller, as in control.solver=osqp or control.kinematics=pinocchio.",
+    metavar="PART.NAME=VALUE",
+    help="Change a parameter of our players, as in control.solver=osqp or thesis.defend.predict=false.",
 )
 pythons = click.option(
     "--python",
@@ -117,8 +117,8 @@ player_settings = click.option(
     "--set",
     "settings",
     multiple=True,
-    metavar="[PLAYER:]control.NAME=VALUE",
-    help="Change the controller of our players, or of one, as in away:control.solver=osqp.",
+    metavar="[PLAYER:]PART.NAME=VALUE",
+    help="Change a parameter of our players, or of one, as in away:control.solver=osqp or home:thesis.parameters=thesis.",
 )
 out = click.option("--out", metavar="FOLDER", help="Run folder.  [default: a new one under runs/]")
 resume = click.option("--resume", is_flag=True, help="Continue the run in --out; its options need not be repeated.")

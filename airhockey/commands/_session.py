@@ -81,7 +81,9 @@ class Session:
         out = self.given["out"]
         if self.given["resume"]:
             asked = {field: option_of(options, field) for field in sorted(self.typed) if has_option(options, field)}
-            return resume(Path(out), asked)
+            resumed = resume(Path(out), asked)
+            say_notes(resumed.notes)
+            return resumed
         folder = begin(options, Path(out) if out is not None else new_folder(name))
         say_what_is_not_protected(agents, self.given.get("isolate"))
         return folder

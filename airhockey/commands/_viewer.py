@@ -10,7 +10,7 @@ def show_in_viewer(playback: Any, given: dict[str, Any]) -> None:
     """Show it until the user has enough."""
     from airhockey.viewing.viewer import show_playback
 
-    browser = not given["no_browser"] and _has_display()
+    browser = not given["no_browser"] and has_display()
     try:
         show_playback(playback, given["host"], given["port"], given["window"], browser, click.echo)
     except KeyboardInterrupt:
@@ -19,7 +19,8 @@ def show_in_viewer(playback: Any, given: dict[str, Any]) -> None:
         playback.close()
 
 
-def _has_display() -> bool:
+def has_display() -> bool:
+    """Whether a browser can be opened here."""
     return (
         os.name != "posix"
         or os.uname().sysname == "Darwin"

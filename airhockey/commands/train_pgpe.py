@@ -82,10 +82,17 @@ _HEAD = "iteration      return   success   penalty    lambda   sigma/start   sec
 @click.option("--discount", type=float, default=0.997, show_default=True, help="γ of the return.")
 @click.option(
     "--reward",
-    type=click.Choice(["thesis", "success"]),
+    type=click.Choice(["thesis", "sparse", "success"]),
     default="thesis",
     show_default=True,
-    help="The thesis's, or 1 for a success and 0 for a failure.",
+    help="The thesis's dense one, its first one for the end alone (5.1), or 1 for a success and 0 for a failure.",
+)
+@click.option(
+    "--fixed-start",
+    type=click.Choice(["none", "position", "velocity", "both"]),
+    default="none",
+    show_default=True,
+    help="What of the puck's start is the same in all episodes.",
 )
 @click.option("--max-penalty", type=float, help="Hold the penalty points per episode below this budget.")
 @click.option("--multiplier-rate", type=float, default=0.5, show_default=True, help="Of the budget's multiplier.")

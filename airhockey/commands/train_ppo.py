@@ -6,12 +6,13 @@ import rich_click as click
 
 from airhockey.commands import HELP_PAGE
 from airhockey.commands import _options as common
+from airhockey.commands import _training as training
 
 if TYPE_CHECKING:
     from airhockey.learning.ppo.folder import PolicyFolder
     from airhockey.learning.ppo.records import Line
 
-_HEAD = "iteration   actions     return   success  violations  actions/s"
+_HEAD = f"iteration {training.HEAD}  actions/s"
 _TASKS = ("3dof-hit", "3dof-defend", "7dof-hit", "7dof-defend", "7dof-prepare")
 _WHOLE = click.IntRange(min=1)
 
@@ -28,27 +29,21 @@ _WHOLE = click.IntRange(min=1)
 )
 @click.option(
     "--reward",
-    type=click.Choice(["shaped", "success"]),
+    type=click.Choice(["shaped", "progress", "success"]),
     default="shaped",
     show_default=True,
-    help="On the way, or only for a success.",
+    help="On the way (differences of a potential, or what it rises), or only for a success.",
 )
-@click.option("--steps", type=_WHOLE, default=1_000_000, show_default=True, help="Actions in all.")
+@training.steps(1_000_000)
 @common.options(common.seed, common.disturbances)
 @click.option("--envs", type=_WHOLE, default=32, show_default=True, help="Environments played at the same time.")
 @click.option("--rollout", type=_WHOLE, default=128, show_default=True, help="Actions in each between updates.")
 @click.option("--epochs", type=_WHOLE, default=6, show_default=True, help="Passes over a rollout.")
 @click.option("--batch", type=click.IntRange(min=2), default=512, show_default=True, help="Actions of an update.")
-@click.option("--hidden", type=_WHOLE, default=128, show_default=True, help="Units of a hidden layer.")
-@click.option(
-    "--learning-rate",
-    type=click.FloatRange(min=0.0, min_open=True),
-    default=5e-4,
-    show_default=True,
-    help="To begin with; it falls to a tenth.",
-)
+@training.hidden
+@training.learning_rate(5e-4)
 @click.option("--threads", type=_WHOLE, help="That play; no result depends on it.  [default: the CPUs]")
-@click.option("--episodes", type=_WHOLE, default=100, show_default=True, help="Played in the end, unseen ones.")
+@training.episodes
 @common.options(*common.RUN)
 @click.pass_context
 def ppo(ctx: click.RichContext, /, **given: Any) -> None:
@@ -68,22 +63,15 @@ def ppo(ctx: click.RichContext, /, **given: Any) -> None:
     """
     typed = common.typed_options(ctx, given)
     from airhockey.commands import _progress
-    from airhockey.commands._session import Session, cpus, disturbances_of
-    from airhockey.errors import MissingDependencyError
+    from airhockey.commands._session import Session, cpus
 
-    try:
+    with training.learning_packages():
         from airhockey.learning.ppo.trainer import Trainer, evaluate_policy
-    except ImportError as error:
-        raise MissingDependencyError(
-            f"training policies needs {error.name or 'a package'}, which cannot be imported; "
-            "install it with: pip install 'airhockey[rl]'"
-        ) from error
     from airhockey.learning.ppo.folder import PolicyFolder
     from airhockey.learning.ppo.records import Settings
 
     session = Session("train ppo", given, typed)
-    values = {name: given[name] for name in Settings.__struct_fields__ if name in given}
-    settings = Settings(**values | {"disturbances": disturbances_of(given)})
+    settings = training.settings_of(Settings, given)
     name = f"ppo-{settings.task}-{settings.actions}-s{settings.seed}"
     folder = session.open(settings, name, PolicyFolder.begin, PolicyFolder.resume)
 
@@ -102,16 +90,12 @@ def ppo(ctx: click.RichContext, /, **given: Any) -> None:
 
 def _line(line: "Line") -> str:
     """A line of the log."""
-    return (
-        f"{line.iteration:>9} {line.steps:>9} {line.mean_return:>10.4g} {line.success:>9.1%} {line.violations:>11.2%} "
-        f"{line.steps_per_second:>10.0f}"
-    )
+    return f"{line.iteration:>9} {training.columns(line)} {line.steps_per_second:>10.0f}"
 
 
 def _print_figures(figures: dict[str, float], folder: "PolicyFolder") -> int:
+    training.say_figures(figures)
     click.echo(
-        f"{figures['episodes']} unseen episodes: success {figures['success']:.1%}, return {figures['mean_return']:.4g}, "
-        f"violations in {figures['violations']:.2%} of the steps\n"
         f"the run's folder is an agent: hockey evaluate --agent {folder.path} --env {folder.manifest.options.task}"
     )
     return 0

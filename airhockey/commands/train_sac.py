@@ -6,12 +6,13 @@ import rich_click as click
 
 from airhockey.commands import HELP_PAGE
 from airhockey.commands import _options as common
+from airhockey.commands import _training as training
 
 if TYPE_CHECKING:
     from airhockey.learning.sac.folder import SkillFolder
     from airhockey.learning.sac.records import Line
 
-_HEAD = "episode   actions     return   success  violations   entropy  actions/s"
+_HEAD = f"episode {training.HEAD}   entropy  actions/s"
 
 
 @click.command()
@@ -27,25 +28,17 @@ _HEAD = "episode   actions     return   success  violations   entropy  actions/s
     show_default=True,
     help="Soft, or optimistic actor critic.",
 )
-@click.option("--steps", type=click.IntRange(min=1), default=200_000, show_default=True, help="Actions in all.")
+@training.steps(200_000)
 @common.options(common.seed, common.disturbances)
 @click.option("--optimism", type=click.FloatRange(min=0.0), default=0.5, show_default=True, help="δ of oac; 0 is sac.")
-@click.option("--hidden", type=click.IntRange(min=1), default=128, show_default=True, help="Units of a hidden layer.")
+@training.hidden
 @click.option("--batch", type=click.IntRange(min=1), default=256, show_default=True, help="Transitions of an update.")
 @click.option(
     "--updates", type=click.FloatRange(min=0.0, min_open=True), default=0.5, show_default=True, help="Per action."
 )
-@click.option(
-    "--learning-rate",
-    type=click.FloatRange(min=0.0, min_open=True),
-    default=1e-3,
-    show_default=True,
-    help="To begin with; it falls to a tenth.",
-)
+@training.learning_rate(1e-3)
 @click.option("--warm-up", type=click.IntRange(min=1), default=2000, show_default=True, help="Random actions first.")
-@click.option(
-    "--episodes", type=click.IntRange(min=1), default=100, show_default=True, help="Played in the end, unseen ones."
-)
+@training.episodes
 @common.options(*common.RUN)
 @click.pass_context
 def sac(ctx: click.RichContext, /, **given: Any) -> None:
@@ -67,22 +60,15 @@ def sac(ctx: click.RichContext, /, **given: Any) -> None:
     if given["algorithm"] == "sac" and "optimism" in typed and not given["resume"]:
         raise click.UsageError("--optimism is for --algorithm oac")
     from airhockey.commands import _progress
-    from airhockey.commands._session import Session, disturbances_of
-    from airhockey.errors import MissingDependencyError
+    from airhockey.commands._session import Session
     from airhockey.learning.sac.folder import SkillFolder
     from airhockey.learning.sac.records import Settings
 
-    try:
+    with training.learning_packages():
         from airhockey.learning.sac.evaluation import evaluate_skill
         from airhockey.learning.sac.trainer import Trainer
-    except ImportError as error:
-        raise MissingDependencyError(
-            f"training skills needs {error.name or 'a package'}, which cannot be imported; "
-            "install it with: pip install 'airhockey[rl]'"
-        ) from error
     session = Session("train sac", given, typed)
-    values = {name: given[name] for name in Settings.__struct_fields__ if name in given}
-    settings = Settings(**values | {"disturbances": disturbances_of(given)})
+    settings = training.settings_of(Settings, given)
     name = f"{settings.algorithm}-{settings.robot}-{settings.task}-s{settings.seed}"
     folder = session.open(settings, name, SkillFolder.begin, SkillFolder.resume)
 
@@ -102,18 +88,12 @@ def sac(ctx: click.RichContext, /, **given: Any) -> None:
 
 def _line(line: "Line") -> str:
     """A line of the log."""
-    return (
-        f"{line.episode:>7} {line.steps:>9} {line.mean_return:>10.4g} {line.success:>9.1%} {line.violations:>11.2%} "
-        f"{line.entropy:>9.3g} {line.steps_per_second:>10.0f}"
-    )
+    return f"{line.episode:>7} {training.columns(line)} {line.entropy:>9.3g} {line.steps_per_second:>10.0f}"
 
 
 def _print_figures(figures: dict[str, float], folder: "SkillFolder") -> int:
     from airhockey.learning.sac.folder import CARD, NETWORK
 
-    click.echo(
-        f"{figures['episodes']} unseen episodes: success {figures['success']:.1%}, return {figures['mean_return']:.4g}, "
-        f"violations in {figures['violations']:.2%} of the steps\n"
-        f"network: {folder.path / NETWORK}, its card: {folder.path / CARD}"
-    )
+    training.say_figures(figures)
+    click.echo(f"network: {folder.path / NETWORK}, its card: {folder.path / CARD}")
     return 0

@@ -284,8 +284,7 @@ class Environment(Copyable):
     state = property(get_state, set_state, doc="The present moment; see `get_state` and `set_state`.")
 
     def _save_streams(self) -> tuple[Any, ...]:
-        plant, seen = self._plant_stream.save(), [perception.save() for perception in self.perceptions]
-        return plant, seen
+        return self._plant_stream.save(), [perception.save() for perception in self.perceptions]
 
     def _restore_streams(self, streams: tuple[Any, ...]) -> None:
         plant, seen = streams

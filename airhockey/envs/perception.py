@@ -1,7 +1,6 @@
 """What a player sees of the true state: noise, bias, lost tracks and delay, from the player's own random stream."""
 
 import math
-from collections import deque
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -47,7 +46,8 @@ class Perception:
             )
         )
         self._bias = np.zeros(self.deviation.size)
-        self._seen: deque[Array] = deque(maxlen=disturbances.delay + 1)
+        self._seen: tuple[Array, ...] = ()  # never changed, but replaced: saved states keep the old
+        self._kept = disturbances.delay + 1
         self._lost_for = 0
         self._stream: Stream | None = None
 
@@ -59,7 +59,7 @@ class Perception:
         self._bias = np.zeros(self.deviation.size)  # a new one: saved states keep the old
         self._bias[:2] = random.normal(0.0, self._profile.puck.position_bias, 2)
         self._bias[6 : 6 + self._n] = random.normal(0.0, self._profile.joints.position_bias, self._n)
-        self._seen.clear()
+        self._seen = ()
         self._lost_for = 0
 
     def observe(self, true: Array) -> Array:
@@ -69,20 +69,19 @@ class Perception:
         if abs(seen[2]) > math.pi:  # only then: player 2's yaw may be +pi, and wrapping costs the last bit
             seen[2] = (seen[2] + math.pi) % (2.0 * math.pi) - math.pi
         self._lose_track(seen)
-        self._seen.append(seen)
+        self._seen = (*self._seen, seen)[-self._kept :]
         return self._seen[0].copy()
 
     def save(self) -> PerceptionState:
         """What the next observations depend on besides the truth."""
         assert self._stream is not None  # since the first reset
-        return PerceptionState(self._stream.save(), self._bias, tuple(self._seen), self._lost_for)
+        return PerceptionState(self._stream.save(), self._bias, self._seen, self._lost_for)
 
     def restore(self, state: PerceptionState) -> None:
         """Go back to what was saved, of this player or of one like it."""
         assert self._stream is not None
-        self._stream.restore(state[0])
-        _, self._bias, seen, self._lost_for = state
-        self._seen = deque(seen, self._seen.maxlen)
+        random, self._bias, self._seen, self._lost_for = state
+        self._stream.restore(random)
 
     def _lose_track(self, seen: Array) -> None:
         """During a loss, show the last state of the puck that was seen."""

@@ -36,7 +36,9 @@ class Physics(Copyable):
     def __setstate__(self, data: mujoco.MjData) -> None:
         self.data = data
         self._buffer = _buffer_of(data)
-        self._counts = data.warning.number
+        counts = data.warning.number
+        self._warned = _bytes_at(counts.ctypes.data, counts.strides[0] * (counts.size - 1) + counts.itemsize)
+        self._nothing = bytes(len(self._warned))
 
     def save(self) -> PhysicsState:
         """The present moment, in memory of its own."""
@@ -46,7 +48,7 @@ class Physics(Copyable):
         """Go to a moment that was saved from the same model, here or in another process."""
         self._buffer[:] = state.buffer
         self.data.time = state.time
-        self._counts.fill(0)  # a moment is saved of a healthy simulation; this one may have diverged since
+        self._warned[:] = self._nothing  # a moment is saved of a healthy simulation; this one may have diverged since
 
 
 _SAVED = (
@@ -62,4 +64,8 @@ def _buffer_of(data: Any) -> memoryview:
     size = max(
         array.ctypes.data + array.nbytes - first for array in (getattr(data, name) for name in _SAVED) if array.size
     )
-    return memoryview((ctypes.c_uint8 * size).from_address(first)).cast("B")
+    return _bytes_at(first, size)
+
+
+def _bytes_at(address: int, size: int) -> memoryview:
+    return memoryview((ctypes.c_uint8 * size).from_address(address)).cast("B")

@@ -4,7 +4,6 @@ import re
 from pathlib import Path
 
 from airhockey.agents import AGENTS
-from airhockey.agents.control.parameters import parsed
 from airhockey.agents.submission import is_submission, submission_config
 from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.envs.disturbances import load_disturbances
@@ -60,10 +59,11 @@ def _check_parameters(options: Options) -> None:
 
 
 def check_settings(agent: str, settings: tuple[str, ...]) -> None:
-    """Only our own players have this controller, and it must have these parameters; raises `ConfigurationError`."""
+    """Only our own players have such parameters, and they must have these; raises `ConfigurationError`."""
     if settings and agent not in AGENTS:
         raise ConfigurationError(f"--set is for the players of airhockey ({', '.join(AGENTS)}), not for {agent!r}")
-    parsed(settings)
+    if agent in AGENTS:
+        AGENTS[agent].check_settings(settings)
 
 
 def check_agent_seed(secret: str | None) -> None:

@@ -55,7 +55,9 @@ def evaluate(folder: EpisodeFolder, engine: Engine | None = None, on_episode: On
     """
     manifest = folder.manifest
     with folder:
-        missing = [job for job in jobs(manifest.options) if job not in folder.done]
+        everything = jobs(manifest.options)
+        folder.check_work(everything)
+        missing = [job for job in everything if job not in folder.done]
         results = (engine or InProcess()).run(EpisodePlayer(manifest.options, manifest.profile), missing)
         with contextlib.closing(results):
             for job, result in results:

@@ -159,6 +159,7 @@ def play_games(
     folder: GameFolder[Any], jobs: list[GameJob], engine: Engine | None = None, on_game: OnGame | None = None
 ) -> None:
     """Play those of the jobs that the folder does not hold yet, and keep each as it ends."""
+    folder.check_work(job.key for job in jobs)
     player = GamePlayer(folder.manifest.options.game, folder.manifest.profile, folder.live.resolve())
     missing = [job for job in jobs if job.key not in folder.done]
     results = (engine or InProcess()).run(player, missing)

@@ -58,6 +58,7 @@ def resume_tournament(
         options = extended(folder.manifest.options, tuple(added), phases, replacements or {})
         if options != folder.manifest.options:
             check_tournament(options)
+            folder.check_work(job.key for job in schedule(options))
             _check_played(folder.records, options)
             folder.change(options)
     return folder

@@ -148,6 +148,8 @@ def _remedy(failure: BaseException, printed: str, limits: Limits) -> str:
         return "build_agent refuses this environment, or is the template as it was: name in env what the agent plays"
     if "--python PATH" in text:
         return "import what there is today, or evaluate it with an interpreter that has the old one (--python PATH)"
+    if "git submodule" in text:
+        return "fetch what belongs to the checkout: git submodule update --init --recursive"
     if any(word in text for word in ("imports '", "has no such file", "defines no function")):
         return "mend the import, and see that the file is part of the submission"
     if any(word in text for word in ("Read-only file system", "PermissionError")):

@@ -10,6 +10,7 @@ from airhockey.agents.packaging.checkout import PACKAGE, find_checkout
 from airhockey.agents.packaging.edition import edition_of_entry
 from airhockey.agents.packaging.metadata import METADATA, Metadata, interpolation_order, read_metadata
 from airhockey.agents.packaging.packing import contents
+from airhockey.agents.packaging.unfetched import pointers
 from airhockey.agents.submission import CONFIG, submission_config
 from airhockey.compat.entries import notes
 from airhockey.envs.editions import DEFAULT, Edition, edition
@@ -74,6 +75,7 @@ def validate(
             problems.append(Problem(name, str(error), remedy))
     rules = edition(year or edition_of_entry(path) or DEFAULT)
     told = list(notes(path))
+    unfetched = pointers(checkout.root)
     if not any(problem.where == CONFIG for problem in problems):
         tasks, unknown_tasks = _tasks(metadata, config, rules)
         problems += unknown_tasks
@@ -85,6 +87,7 @@ def validate(
         if rules.edition != DEFAULT:
             told.append(f"played under the rules of {rules.edition} (--edition chooses)")
         sides = [(task, 1) for task in tasks] + [(task, 2) for task in tasks if task == GAME]
+        before = len(problems)
         for task, side in sides:
             entrant = Entrant(str(path.resolve()), isolate=mode, limits=limits, python=python)
             outcome = try_out(entrant, task, steps, side, rules.edition)
@@ -93,12 +96,22 @@ def validate(
                 problems += slow(outcome)
             else:
                 problems.append(outcome)
+        if unfetched and len(trials) < len(sides):
+            problems.insert(before, _not_fetched(unfetched))
+        elif unfetched:
+            told.append(_not_fetched(unfetched).what)
     if any(trial.thinking > BUSY for trial in trials):
         told.append(
             "it thinks between its steps, in threads or processes: evaluations pace them as on the robot (--real-time)"
         )
     conclusion = concluded(name, trials, problems)
     return Verdict(name, tuple(problems), tuple(trials), left_out, tuple(told), conclusion, rules.edition)
+
+
+def _not_fetched(files: list[str]) -> Problem:
+    more = f" and {len(files) - 1} more" if len(files) > 1 else ""
+    what = f"{files[0]!r}{more} is not there: git lfs has left a pointer in its place"
+    return Problem("the checkout", what, "git lfs pull, in the checkout")
 
 
 def concluded(name: str, trials: list[Trial], problems: list[Problem]) -> str:
@@ -120,6 +133,8 @@ def _cause(problem: Problem) -> str:
         for word in ("written for another version", "0-dimensional", "array element with a sequence")
     ):
         return "the libraries' cause: they are not those of its time"
+    if "git lfs" in problem.what or "git submodule" in problem.what:
+        return "this checkout's cause: git has not fetched all of it"
     if "No space left" in problem.what or "bubblewrap" in problem.what:
         return "this machine's cause"
     return "the entry's cause"

@@ -1,7 +1,7 @@
 """Entries that want a better result than their play deserves: time for nothing, and knowledge of the future."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -35,6 +35,21 @@ class Base:
     def cheat(self, observation):
         pass
 
+class Employer(Base):
+    # Lets another process work, which `hire` makes; it gives True there.
+    def __init__(self, env_info, **kwargs):
+        super().__init__(env_info, **kwargs)
+        self.done, done = os.pipe()
+        asked, self.asked = os.pipe()
+        if self.hire():
+            while os.read(asked, 1):
+                compute(0.06)
+                os.write(done, b"x")
+            os._exit(0)
+    def cheat(self, observation):
+        os.write(self.asked, b"x")
+        os.read(self.done, 1)
+
 def frames():
     frame = sys._getframe()
     while frame:
@@ -62,37 +77,20 @@ class Cheat:
 
 TIME = {
     "work in a child": Cheat("""
-class Agent(Base):
-    def __init__(self, env_info, **kwargs):
-        super().__init__(env_info, **kwargs)
-        self.done, done = os.pipe()
-        asked, self.asked = os.pipe()
-        if os.fork() == 0:
-            while os.read(asked, 1):
-                compute(0.06)
-                os.write(done, b"x")
-            os._exit(0)
-    def cheat(self, observation):
-        os.write(self.asked, b"x")
-        os.read(self.done, 1)
+class Agent(Employer):
+    def hire(self):
+        return os.fork() == 0
 """),
     "work in a grandchild that nobody waits for": Cheat("""
-class Agent(Base):
-    def __init__(self, env_info, **kwargs):
-        super().__init__(env_info, **kwargs)
-        self.done, done = os.pipe()
-        asked, self.asked = os.pipe()
+class Agent(Employer):
+    def hire(self):
         if os.fork() == 0:
             os.setsid()
             if os.fork() == 0:
-                while os.read(asked, 1):
-                    compute(0.06)
-                    os.write(done, b"x")
+                return True
             os._exit(0)
         os.wait()
-    def cheat(self, observation):
-        os.write(self.asked, b"x")
-        os.read(self.done, 1)
+        return False
 """),
     "a new child for every step": Cheat("""
 class Agent(Base):
@@ -271,6 +269,48 @@ class Agent(Base):
         late = Late()
         return self.agent.draw_action(observation)
 """),
+    "work in the finding of its own answer": Cheat("""
+class Lazy:
+    def __init__(self, action):
+        self.action = action
+    def __array__(self, *given, **named):
+        compute(0.06)
+        return self.action
+class Agent(Base):
+    def draw_action(self, observation):
+        return Lazy(self.agent.draw_action(observation))
+"""),
+    "work in an attribute that is asked for": Cheat("""
+class Agent(Base):
+    @property
+    def draw_action(self):
+        compute(0.06)
+        return self.agent.draw_action
+"""),
+    "work when a signal comes": Cheat("""
+class Agent(Base):
+    def __init__(self, env_info, **kwargs):
+        super().__init__(env_info, **kwargs)
+        signal.signal(signal.SIGALRM, lambda *_: compute(0.06))
+    def cheat(self, observation):
+        signal.setitimer(signal.ITIMER_REAL, 0.0005)
+        time.sleep(0.001)
+"""),
+    "work in a trace of every line": Cheat("""
+class Agent(Base):
+    def cheat(self, observation):
+        sys.settrace(lambda *_: compute(0.06))
+        int("3")
+        (lambda: 0)()
+        sys.settrace(None)
+"""),
+    "work in a collection of garbage": Cheat("""
+import gc
+class Agent(Base):
+    def cheat(self, observation):
+        gc.callbacks[:] = [lambda phase, _: compute(0.03)]
+        gc.collect()
+"""),
     "computing in preprocessors": Cheat("""
 class Agent(Base):
     def __init__(self, env_info, **kwargs):
@@ -321,6 +361,27 @@ class Agent(Base):
     def episode_start(self):
         os.kill(os.getpid(), signal.SIGKILL)
 """,
+    "an agent that fills the pipe of its requests": """
+class Agent(Base):
+    def cheat(self, observation):
+        for frame in frames():
+            names = frame.f_locals
+            if "nonce" in names:
+                pipe = os.open(f"/proc/self/fd/{names['requests']}", os.O_WRONLY | os.O_NONBLOCK)
+                try:
+                    while True:
+                        os.write(pipe, bytes(4096))
+                except BlockingIOError:
+                    os.write(names["replies"], b"K" + names["nonce"])
+        time.sleep(1000)
+""",
+    "an agent whose threads never let go": """
+class Agent(Base):
+    def cheat(self, observation):
+        sys.setswitchinterval(1e6)
+        threading.Thread(target=compute, args=(1e6,)).start()
+        time.sleep(1000)
+""",
     "steps just within the patience": """
 class Agent(Base):
     def draw_action(self, observation):
@@ -351,6 +412,10 @@ ACTIONS = {
     "numbers beyond float64": "np.full((2, 3), np.longdouble('1e4000'))",
     "whole numbers beyond float64": "[[10**400] * 3] * 2",
     "a file that is not there any more": "gone()",
+    "a memory that was let go": "(lambda m: (np.frombuffer(m, float, 6).reshape(2, 3) * np.nan))(bytearray(48))",
+    "a number that says it is an array": "type('A', (float,), {'shape': (2, 3), '__len__': lambda self: 2})(0.0)",
+    "an interface to an address of nowhere": "Nowhere()",
+    "a list of lists of itself": "(lambda one: (one.extend([one, one]), one)[1])([])",
 }
 """Actions that are none, as an expression; each fails the agent, and nobody else."""
 ODD = """
@@ -363,6 +428,8 @@ class Shifty:
 class Raising:
     def __array__(self, *given, **named):
         raise BaseException("\\x1b[2J[red]")
+class Nowhere:
+    __array_interface__ = {"shape": (2, 3), "typestr": "<f8", "data": (8, False), "version": 3}
 class Ending:
     def __array__(self, *given, **named):
         sys.exit(0)
@@ -422,75 +489,57 @@ SEEDS = {"from its own seed, --seed 7": "7", "from its own seed, --seed random":
 def attack(sample: bool) -> Iterator[Verdict]:
     """Play with each cheat, and look at what is on record."""
     for name in product.wanted(TIME)[: 1 if sample else None]:
-        yield _played("cheats with time", name, TIME[name].code, TIME[name].clock)
+        cheat = TIME[name]
+        options = ("--clock", cheat.clock, "--seed", "1", "--json")
+        yield _evaluated("cheats with time", name, cheat.code, options, _is_charged)
     for name in () if sample else product.wanted(WAITS):
-        yield _waited("entries that make others wait", name, WAITS[name])
+        options = ("--patience", "4", "--seed", "1")
+        yield _evaluated("entries that make others wait", name, WAITS[name], options, _is_thrown_out, patience=400.0)
     for name in ("an array that ends the program",) if sample else product.wanted(ACTIONS):
-        yield _odd("actions that are none", name, ODD.replace("ACTION", ACTIONS[name]))
+        code = ODD.replace("ACTION", ACTIONS[name])
+        yield _evaluated("actions that are none", name, code, ("--seed", "1"), _is_thrown_out)
     for name in () if sample else product.wanted(SEEDS):
-        yield _foreseen("knowing the future", name, SEEDS[name])
+        yield _evaluated("knowing the future", name, ORACLE, ("--seed", SEEDS[name]), _knows_nothing)
 
 
-def _played(kind: str, name: str, code: str, clock: str) -> Verdict:
+Judge = Callable[[product.Done], tuple[bool, str]]
+"""From how an evaluation ended to whether the product held, and what it said."""
+
+
+def _evaluated(
+    kind: str, name: str, code: str, options: tuple[str, ...], judge: Judge, patience: float = product.PATIENCE
+) -> Verdict:
+    """Evaluate an entry over an episode, and judge how that ended."""
+    with product.fresh_place() as place:
+        done = place.hockey(
+            *("evaluate", "--env", "3dof-hit", "--agent", str(make_entry(place.path, code)), "--episodes", "1"),
+            *("--jobs", "1", "--quiet", "--out", "run", *options),
+            patience=patience,
+        )
+    bad = trouble(kind, name, done)
+    if bad is not None:
+        return bad
+    if "\x1b[2J" in done.out + done.err:
+        return Verdict(kind, name, ESCAPE, "control sequences reached the terminal")
+    held, said = judge(done)
+    return Verdict(kind, name, HELD if held else ESCAPE, said)
+
+
+def _is_thrown_out(done: product.Done) -> tuple[bool, str]:
+    return done.status == 3, product.last_line(done)
+
+
+def _is_charged(done: product.Done) -> tuple[bool, str]:
     """A cheat is caught where its longest answer is known to be too long, or where it is thrown out."""
-    with product.fresh_place() as place:
-        entry = make_entry(place.path, code)
-        done = place.hockey(
-            *("evaluate", "--env", "3dof-hit", "--agent", str(entry), "--episodes", "1", "--jobs", "1"),
-            *("--clock", clock, "--seed", "1", "--json", "--quiet", "--out", "run"),
-        )
-        bad = trouble(kind, name, done)
-        if bad is not None:
-            return bad
-        if done.status == 3:
-            return Verdict(kind, name, HELD, "thrown out")
-        longest = json.loads(done.out)["computation_time"]["max"]
-        return Verdict(kind, name, HELD if longest > LIMIT else ESCAPE, f"longest answer {longest * 1e3:.1f} ms")
+    if done.status == 3:
+        return True, "thrown out"
+    longest = json.loads(done.out)["computation_time"]["max"]
+    return longest > LIMIT, f"longest answer {longest * 1e3:.1f} ms"
 
 
-def _waited(kind: str, name: str, code: str) -> Verdict:
-    with product.fresh_place() as place:
-        entry = make_entry(place.path, code)
-        done = place.hockey(
-            *("evaluate", "--env", "3dof-hit", "--agent", str(entry), "--episodes", "1", "--jobs", "1"),
-            *("--patience", "4", "--seed", "1", "--quiet", "--out", "run"),
-            patience=400.0,
-        )
-        bad = trouble(kind, name, done)
-        if bad is not None:
-            return bad
-        return Verdict(kind, name, HELD if done.status == 3 else ESCAPE, product.last_line(done))
-
-
-def _odd(kind: str, name: str, code: str) -> Verdict:
-    with product.fresh_place() as place:
-        entry = make_entry(place.path, code)
-        done = place.hockey(
-            *("evaluate", "--env", "3dof-hit", "--agent", str(entry), "--episodes", "1", "--jobs", "1"),
-            *("--seed", "1", "--quiet", "--out", "run"),
-        )
-        bad = trouble(kind, name, done)
-        if bad is not None:
-            return bad
-        if "\x1b[2J" in done.out + done.err:
-            return Verdict(kind, name, ESCAPE, "control sequences reached the terminal")
-        return Verdict(kind, name, HELD if done.status == 3 else ESCAPE, product.last_line(done))
-
-
-def _foreseen(kind: str, name: str, seed: str) -> Verdict:
-    with product.fresh_place() as place:
-        entry = make_entry(place.path, ORACLE)
-        done = place.hockey(
-            *("evaluate", "--env", "3dof-hit", "--agent", str(entry), "--episodes", "1", "--jobs", "1"),
-            *("--seed", seed, "--quiet", "--out", "run"),
-        )
-        bad = trouble(kind, name, done)
-        if bad is not None:
-            return bad
-        if done.status not in (0, 3):
-            return Verdict(kind, name, ESCAPE, product.last_line(done))
-        found = [line for line in done.err.splitlines() if "@@FOUND" in line]
-        return Verdict(kind, name, ESCAPE if found else HELD, *found[:1])
+def _knows_nothing(done: product.Done) -> tuple[bool, str]:
+    found = [line for line in done.err.splitlines() if "@@FOUND" in line]
+    return done.status in (0, 3) and not found, found[0] if found else product.last_line(done)
 
 
 def trouble(kind: str, name: str, done: product.Done) -> Verdict | None:

@@ -44,6 +44,8 @@ ALONE = (
     "take_memory_by_sockets",
     "crash",
     "end_the_first_process",
+    "fill_the_pipe_of_requests",
+    "find_descriptors_that_were_left_open",
 )
 """Attempts that each have a sandbox of their own: they do not end well."""
 _SHOW = """

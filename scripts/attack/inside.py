@@ -678,6 +678,330 @@ def write_memory_of_process_1() -> object:
         return memory.read(1)
 
 
+# ---- what an outsider thinks of next
+
+
+@attempt
+def run_a_program_from_memory() -> object:
+    number = 319 if IS_X86 else 279
+    fd = int(libc.syscall(ctypes.c_long(number), b"x", 0))
+    if fd < 0:
+        return None
+    os.write(fd, Path("/bin/true").read_bytes())
+    return subprocess.run([f"/proc/self/fd/{fd}"], pass_fds=[fd], check=True)
+
+
+@attempt
+def find_descriptors_that_were_left_open() -> object:
+    """Only the standard ones, pipes to the evaluator and what lies in the sandbox may be open."""
+    known = (
+        "/dev/null",
+        "pipe:[",
+        "/memfd:airhockey",
+        "anon_inode:",
+        "/proc/",
+        "/usr/",
+        "/submission",
+        "/tmp",
+        sys.prefix,
+    )
+    found = {
+        fd: os.readlink(f"/proc/self/fd/{fd}")
+        for fd in os.listdir("/proc/self/fd")
+        if os.path.islink(f"/proc/self/fd/{fd}")
+    }
+    return [where for where in found.values() if not where.startswith(known)]
+
+
+@attempt
+def read_hardware_and_kernel_by_sysfs() -> object:
+    return [
+        name
+        for place in ("/sys/kernel", "/sys/class/net", "/sys/firmware", "/sys/fs/cgroup")
+        for name in os.listdir(place)
+    ]
+
+
+@attempt
+def reach_the_host_by_sockets_in_the_file_system() -> object:
+    got = []
+    for path in (
+        "/run/dbus/system_bus_socket",
+        "/var/run/docker.sock",
+        "/run/systemd/private",
+        "/dev/log",
+        "/run/containerd/containerd.sock",
+        "/tmp/.X11-unix/X0",
+    ):
+        with socket.socket(socket.AF_UNIX) as one:
+            try:
+                one.connect(path)
+            except OSError:
+                continue
+            got.append(path)
+    return got
+
+
+@attempt
+def fill_the_pipe_of_requests() -> object:
+    """A pipe can be opened again from `/proc` the other way round; who then asks for something waits for room in it."""
+    frame = sys._getframe()
+    while "nonce" not in frame.f_locals:
+        frame = frame.f_back
+    names = frame.f_locals
+    again = os.open(f"/proc/self/fd/{names['requests']}", os.O_WRONLY | os.O_NONBLOCK)
+    try:
+        while os.write(again, bytes(4096)):
+            pass
+    except BlockingIOError:
+        os.write(names["replies"], b"K" + names["nonce"])
+    time.sleep(100_000)
+    return None
+
+
+@attempt
+def keep_the_evaluator_waiting_by_signals_of_its_pipes() -> object:
+    """A descriptor's owner gets SIGIO: the owner may be anybody whom one may signal."""
+    F_SETOWN, F_SETSIG, O_ASYNC = 8, 10, 0o20000
+    for fd in range(3, 64):
+        try:
+            fcntl.fcntl(fd, F_SETSIG, signal.SIGKILL)
+            fcntl.fcntl(fd, F_SETOWN, TOLD["evaluator"])
+            fcntl.fcntl(fd, fcntl.F_SETFL, fcntl.fcntl(fd, fcntl.F_GETFL) | O_ASYNC)
+        except OSError:
+            continue
+        return fd
+    return None
+
+
+@attempt
+def grow_the_pipes() -> object:
+    F_SETPIPE_SZ = 1031
+    grown = []
+    for _ in range(200):
+        try:
+            grown.append(os.pipe())
+            fcntl.fcntl(grown[-1][0], F_SETPIPE_SZ, 64 * MIB)
+        except OSError:
+            break
+    total = sum(fcntl.fcntl(reader, 1032) for reader, _ in grown)
+    for pair in grown:
+        os.close(pair[0])
+        os.close(pair[1])
+    return _too_much(total, TOLD["memory"])
+
+
+@attempt
+def dump_core() -> object:
+    """A kernel that hands dumps to a program of the host's does so whatever the limit, but for a limit of one byte."""
+    hard = resource.getrlimit(resource.RLIMIT_CORE)[1]
+    return f"cores of up to {hard} bytes" if hard > 1 else None
+
+
+@attempt
+def leave_the_session() -> object:
+    os.setsid()
+    fd = os.open("/dev/ptmx", os.O_RDWR)
+    fcntl.ioctl(fd, 0x40045431, struct.pack("i", 0))
+    name = os.ttyname(
+        os.open(f"/dev/pts/{struct.unpack('i', fcntl.ioctl(fd, 0x80045430, bytes(4)))[0]}", os.O_RDWR | os.O_NOCTTY)
+    )
+    return name if Path(name).stat().st_dev == os.stat("/dev").st_dev else None
+
+
+@attempt
+def type_into_a_terminal_of_its_own() -> object:
+    """TIOCSTI with bits set above those that the kernel reads."""
+    fd = os.open("/dev/ptmx", os.O_RDWR | os.O_NOCTTY)
+    libc.ioctl.argtypes = None
+    for request in (0x5412, 0x5412 | 1 << 32, 0x5412 | 0xFFFFFFFF << 32, 0x541C):
+        if (
+            libc.syscall(
+                ctypes.c_long(16 if IS_X86 else 29),
+                ctypes.c_long(fd),
+                ctypes.c_long(ctypes.c_long(request).value),
+                b"x",
+            )
+            == 0
+        ):
+            return hex(request)
+    return None
+
+
+@attempt
+def write_hooks_for_other_processes() -> object:
+    hooks = (
+        "/etc/ld.so.preload", "/etc/ld.so.cache", "/usr/lib/python3/sitecustomize.py", "/proc/sys/kernel/modprobe",
+        "/proc/sys/fs/binfmt_misc/register", f"{sys.prefix}/lib/sitecustomize.py",
+    )  # fmt: skip
+    return [place for place in hooks if _can_write(place)]
+
+
+@attempt
+def replace_a_mounted_folder() -> object:
+    for place in ("/submission", "/tmp", "/dev/shm", sys.prefix):
+        try:
+            os.rename(place, place + "-gone")
+            return place
+        except OSError:
+            continue
+    return None
+
+
+@attempt
+def run_a_setuid_file_of_its_own() -> object:
+    path = Path(tempfile.gettempdir(), "sh")
+    path.write_bytes(Path("/bin/cat").read_bytes())
+    path.chmod(0o6755)
+    status = Path("/proc/self/mountinfo").read_text()
+    (options,) = {line.split()[5] for line in status.splitlines() if line.split()[4] == tempfile.gettempdir()}
+    return None if "nosuid" in options else options
+
+
+@attempt
+def set_file_capabilities() -> object:
+    path = Path(tempfile.gettempdir(), "program")
+    path.write_bytes(b"")
+    os.setxattr(path, "security.capability", struct.pack("<IIIII", 0x02000001, 0xFFFFFFFF, 0, 0xFFFFFFFF, 0))
+    return "set"
+
+
+@attempt
+def send_a_descriptor_to_a_child_that_outlives_it() -> object:
+    one, other = socket.socketpair()
+    socket.send_fds(one, [b"x"], [os.open("/", os.O_RDONLY)])
+    _, got, _, _ = socket.recv_fds(other, 1, 1)
+    os.fchdir(got[0])
+    return [name for name in os.listdir("../..") if name not in os.listdir("/")]
+
+
+@attempt
+def watch_files_of_the_host() -> object:
+    number = (254, 255) if IS_X86 else (27, 27)
+    fd = libc.inotify_init()
+    return libc.inotify_add_watch(fd, TOLD["secret"].encode(), 0x3B) >= 0 or number is None
+
+
+@attempt
+def lock_files_that_others_need() -> object:
+    """A lock on software that is shared with the host would stop whoever else asks for it."""
+    folder = Path(sys.prefix)
+    held = []
+    for path in (folder, folder / "pyvenv.cfg"):
+        with path.open() if path.is_file() else os.fdopen(os.open(path, os.O_RDONLY)) as stream:
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            held.append(str(path))
+    return None
+
+
+@attempt
+def see_where_things_lie_on_the_host() -> object:
+    return [
+        line
+        for line in Path("/proc/self/mountinfo").read_text().splitlines()
+        if TOLD["secret"].rsplit("/", 1)[0] in line and "/entry" not in line
+    ]
+
+
+@attempt
+def find_what_the_organiser_typed() -> object:
+    found = []
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        line = Path(f"/proc/{pid}/cmdline").read_bytes()
+        if b"drive.py" in line or b"--seed" in line:
+            found.append(line)
+    return found
+
+
+@attempt
+def read_the_stack_and_the_system_calls_of_process_1() -> object:
+    return [
+        Path(f"/proc/1/{name}").read_text()
+        for name in ("stack", "syscall", "auxv")
+        if "running" not in Path(f"/proc/1/{name}").read_text()
+    ]
+
+
+@attempt
+def change_the_scheduling_of_others() -> object:
+    os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+    return "real time"
+
+
+@attempt
+def lock_memory() -> object:
+    kept = mmap.mmap(-1, 512 * MIB)
+    if libc.mlock(ctypes.byref(ctypes.c_char.from_buffer(kept)), 512 * MIB) == 0:
+        return "512 MiB"
+    return None
+
+
+@attempt
+def make_a_timer_of_the_host() -> object:
+    number = 222 if IS_X86 else 107  # timer_create with CLOCK_REALTIME_ALARM wakes a sleeping machine
+    fd = ctypes.c_int()
+    return libc.syscall(ctypes.c_long(number), 8, None, ctypes.byref(fd)) == 0
+
+
+@attempt
+def freeze_file_systems() -> object:
+    fd = os.open("/usr", os.O_RDONLY)
+    return fcntl.ioctl(fd, 0xC0045877, 0) == 0  # FIFREEZE
+
+
+@attempt
+def change_flags_of_files_of_the_host() -> object:
+    fd = os.open("/usr/bin/env", os.O_RDONLY)
+    return fcntl.ioctl(fd, 0x40086602, struct.pack("l", 0x10)) == 0  # FS_IOC_SETFLAGS, immutable
+
+
+@attempt
+def clone_a_block_device() -> object:
+    return [
+        path.name
+        for path in Path("/dev").iterdir()
+        if path.is_block_device()
+        or path.name
+        in ("kvm", "fuse", "net", "mem", "nvidia0", "nvidiactl", "dri", "input", "snd", "vhost-net", "uinput")
+    ]
+
+
+@attempt
+def open_processes_by_descriptors() -> object:
+    """A pidfd of process 1 or of the evaluator takes signals, and may be waited for."""
+    got = []
+    for pid in (1, TOLD["evaluator"]):
+        try:
+            fd = call("pidfd_open", pid, 0)
+            signal.pidfd_send_signal(fd, signal.SIGSTOP)
+        except OSError:
+            continue
+        got.append(pid)
+    return [pid for pid in got if pid != 1]
+
+
+@attempt
+def keep_the_first_process_busy() -> object:
+    """Its zombies must be cleared away, or numbers run out."""
+    for _ in range(400):
+        try:
+            if os.fork() == 0:
+                if os.fork() == 0:
+                    os._exit(0)
+                os._exit(0)
+            os.wait()
+        except OSError:
+            break
+    time.sleep(0.3)
+    zombies = 0
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            zombies += Path(f"/proc/{pid}/stat").read_text().rpartition(") ")[2].startswith("Z")
+        except OSError:
+            continue
+    return f"{zombies} zombies" if zombies > TOLD["processes"] else None
+
+
 # ---- resources; each gets as much as it can and says how much that was
 
 

@@ -7,6 +7,7 @@ import random
 import signal
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,36 +17,62 @@ from verdicts import CHANGED, HANG, HELD, LEFTOVER, TRACEBACK, Verdict
 KILLS, SAMPLE = 100, 1
 TIMES = ("time", "second", "created", "longest", "mean", "p99", "rate", "duration", "cpu", "agent_seed", "memory")
 """Parts of names of values that measure this machine, or say when it was."""
-RUNS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "evaluate": (
-        ("evaluate", "--env", "3dof-hit", "--agent", "hold", "--episodes", "40", "--jobs", "2"),
-        ("journal.jsonl", "result.json"),
+
+
+@dataclass(frozen=True)
+class Run:
+    """A command that is killed.
+
+    Attributes:
+        command: Without where it writes.
+        files: What it leaves that must be the same, as patterns.
+        before: A command whose run "before" it needs.
+        film: The file in its folder that it writes, where it is no run, but begins anew every time.
+    """
+
+    command: tuple[str, ...]
+    files: tuple[str, ...]
+    before: tuple[str, ...] = ()
+    film: str = ""
+
+
+HOLDS = ("evaluate", "--env", "3dof-hit", "--agent", "hold", "--episodes")
+RUNS: dict[str, Run] = {
+    "evaluate": Run((*HOLDS, "40", "--jobs", "2"), ("journal.jsonl", "result.json")),
+    "match": Run(
+        ("match", "hold", "hold", "--games", "3", "--steps", "600", "--jobs", "2"), ("journal.jsonl", "result.json")
     ),
-    "match": (
-        ("match", "hold", "hold", "--games", "3", "--steps", "600", "--jobs", "2"),
-        ("journal.jsonl", "result.json"),
-    ),
-    "tournament": (
+    "tournament": Run(
         ("tournament", "a=hold", "b=hold", "c=hold", "--steps", "400", "--jobs", "2"),
         ("journal.jsonl", "standings.json"),
     ),
-    "train pgpe": (
+    "train pgpe": Run(
         (
             *("train", "pgpe", "--task", "hit", "--robot", "3dof", "--iterations", "3", "--candidates", "4"),
             *("--episodes", "1", "--jobs", "2"),
         ),
         ("*.csv", "*.yaml"),
     ),
-    "train sac": (
+    "train sac": Run(
         (
             *("train", "sac", "--task", "defend", "--robot", "3dof", "--steps", "600", "--warm-up", "100"),
             *("--episodes", "3", "--batch", "32"),
         ),
         ("log.csv", "network.npz"),
     ),
-    "a Dask worker": (
-        ("evaluate", "--env", "3dof-hit", "--agent", "hold", "--episodes", "40", "--cluster", "local:2"),
-        ("journal.jsonl", "result.json"),
+    "train ppo": Run(
+        (
+            *("train", "ppo", "--task", "3dof-hit", "--steps", "12000", "--envs", "8", "--rollout", "64"),
+            *("--batch", "128", "--episodes", "4", "--threads", "1"),
+        ),
+        ("log.csv", "air_hockey_agent/*"),
+    ),
+    "a Dask worker": Run((*HOLDS, "40", "--cluster", "local:2"), ("journal.jsonl", "result.json")),
+    "video": Run(
+        ("video", "before", "--seconds", "0.4", "--size", "160x90", "--quality", "fast"),
+        ("film.mp4",),
+        before=(*HOLDS, "4", "--jobs", "1"),
+        film="/film.mp4",
     ),
 }
 
@@ -62,12 +89,17 @@ def attack(sample: bool) -> Iterator[Verdict]:
 
 def _killed(name: str, kills: int, chance: random.Random) -> Iterator[Verdict]:
     kind = f"kills of {name}"
-    command, files = RUNS[name]
+    run = RUNS[name]
+    command, files = run.command, run.files
     if kills == SAMPLE:
         command = (*command[:5], "--episodes", "8", "--jobs", "1")
     with product.fresh_place() as place:
+        if run.before:
+            place.hockey(*run.before, "--quiet", "--out", "before")
+        if run.film:
+            (place.path / "reference").mkdir()
         began = time.monotonic()
-        reference = place.hockey(*command, "--quiet", "--out", "reference", patience=900.0)
+        reference = place.hockey(*command, "--quiet", "--out", f"reference{run.film}", patience=900.0)
         whole = time.monotonic() - began
         wanted = _content(place.path / "reference", files)
         if reference.status != 0 or not wanted:
@@ -77,14 +109,16 @@ def _killed(name: str, kills: int, chance: random.Random) -> Iterator[Verdict]:
         while done < kills:
             attempt += 1
             out = f"run{attempt}"
+            if run.film:
+                (place.path / out).mkdir()
             fresh = True
             ended: product.Done | None = None
             while ended is None:
                 moment = chance.uniform(0.3, 1.1) * whole / 2
-                given = (*command,) if fresh else (*command[: 2 if command[0] == "train" else 1], "--resume")
+                given = command if fresh else (*command[: 2 if command[0] == "train" else 1], "--resume")
                 if not fresh and not any((place.path / out).glob("*.json")):
                     given = command
-                process = place.start(product.hockey(*given, "--quiet", "--out", out))
+                process = place.start(product.hockey(*given, "--quiet", "--out", out + run.film))
                 fresh = False
                 if done < kills and _kill_at(process, moment, name, chance):
                     done += 1

@@ -6,9 +6,10 @@ import pytest
 from airhockey import envs
 from airhockey.agents import build_agent
 from airhockey.agents.control.kinematics import ArmKinematics
-from airhockey.agents.control.parameters import control_parameters, settings_in_use
+from airhockey.agents.control.parameters import control_parameters
 from airhockey.agents.control.pinocchio_model import PinocchioKinematics
 from airhockey.agents.registry import AGENTS
+from airhockey.agents.settings import settings_in_use
 from airhockey.envs.specs import IIWA, PLANAR
 from airhockey.errors import ConfigurationError, MissingDependencyError
 
@@ -51,7 +52,7 @@ def test_a_setting_is_for_who_is_built_meanwhile() -> None:
 
 @pytest.mark.parametrize("setting", ["solver=osqp", "control.solver", "control.nothing=1", "control.solver=simplex"])
 def test_what_cannot_be_chosen_is_refused(setting: str) -> None:
-    with pytest.raises(ConfigurationError, match=r"control\.NAME=VALUE|QP solver"):
+    with pytest.raises(ConfigurationError, match=r"PART\.NAME=VALUE|QP solver|nothing"):
         AGENTS["planner"].build(envs.make("7dof-hit").env_info, settings=[setting])
 
 

@@ -62,7 +62,7 @@ def test_settings_are_one_players_or_everybodys(hockey: Hockey) -> None:
         ("match hold {agent} --isolate none --python {python}", "--python is for submissions"),
         ("match {agent} {agent} --set control.solver=dual", "fits nobody"),
         ("match hold {agent} --set away:control.solver=dual", "--set is for the players of airhockey"),
-        ("match hold hold --set control.sober=dual", "control.NAME=VALUE"),
+        ("match hold hold --set control.sober=dual", "sober"),
         ("match hold {agent} --python nowhere", "'nowhere' is no Python"),
         ("match --resume --out run --python {python}", "name the players, too"),
         ("tournament a=hold b=hold --set c:control.solver=dual", "c:control.solver"),

@@ -69,3 +69,28 @@ def test_a_strangers_text_commands_no_terminal(tmp_path: Path) -> None:
     done = subprocess.run([*HOCKEY, *line], capture_output=True, text=True, cwd=tmp_path)
     assert done.returncode == 2 and len(done.stderr.splitlines()) == 1
     assert "\x1b" not in done.stderr and "\u202e" not in done.stderr
+
+
+def test_a_thread_that_never_ends_keeps_no_command_alive() -> None:
+    code = """
+import threading
+from airhockey.commands import _threads
+_threads.GRACE = 0.1
+threading.Thread(target=threading.Event().wait).start()
+_threads.end_with(3)
+"""
+    assert subprocess.run([sys.executable, "-c", code], timeout=60).returncode == 3
+
+
+def test_ctrl_c_while_modules_are_imported_is_no_traceback() -> None:
+    code = """
+import sys
+class CtrlC:
+    def find_spec(self, name, *_):
+        if name == "rich.console": raise KeyboardInterrupt
+sys.meta_path.insert(0, CtrlC())
+from airhockey.cli import main
+main()
+"""
+    done = subprocess.run([sys.executable, "-c", code, "agents"], capture_output=True, text=True)
+    assert done.returncode == 130 and done.stderr == ""

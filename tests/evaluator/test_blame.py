@@ -187,6 +187,20 @@ def test_a_submission_cannot_talk_its_way_out(
     assert evaluate(begin(options, tmp_path / "run")).agent_errors == 1
 
 
+@pytest.mark.parametrize(
+    "code",
+    [
+        "observation[:] = np.nan; raise ValueError('what I saw')",
+        "raise GeneratorExit",
+        "raise BaseExceptionGroup('all', [BaseException()])",
+        "raise type('Mute', (Exception,), {'__str__': lambda self: 1 / 0})",
+    ],
+)
+def test_whatever_it_raises_here_is_its_own(submission: Submission, tmp_path: Path, code: str) -> None:
+    options = Options(environments=(ENV,), agent=submission(code), episodes=2, isolate="none")
+    assert evaluate(begin(options, tmp_path / "run")).agent_errors == 2
+
+
 def test_an_agents_process_that_cannot_be_started(
     submission: Submission, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

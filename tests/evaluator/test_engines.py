@@ -103,7 +103,9 @@ options = Options(environments=("3dof-defend",), agent="hold", episodes=2)
 """
 
 
-@pytest.mark.parametrize(("guard", "status"), [("", 1), ('if __name__ == "__main__": ', 0)])
+@pytest.mark.parametrize(
+    ("guard", "status"), [("", 1), pytest.param('if __name__ == "__main__": ', 0, marks=pytest.mark.long)]
+)
 def test_a_script_is_told_of_the_guard_that_it_lacks(tmp_path: Path, guard: str, status: int) -> None:
     (tmp_path / "mine.py").write_text(SCRIPT.format(guard=guard))
     done = subprocess.run([sys.executable, "mine.py"], cwd=tmp_path, capture_output=True, text=True)

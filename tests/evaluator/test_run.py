@@ -214,6 +214,7 @@ def test_a_workers_memory_has_a_bound(tmp_path: Path) -> None:
     assert max(peaks) < 400
 
 
+@pytest.mark.long
 def test_memory_does_not_grow_with_the_episodes() -> None:
     options = Options(environments=(ENV,), agent="hold", disturbances="server")
     player = EpisodePlayer(options, load_disturbances("server"))

@@ -90,6 +90,19 @@ def test_the_rewards_of_an_episode_are_its_end_and_where_it_began():
     assert total == pytest.approx(last - begin)
 
 
+def test_progress_is_rewarded_once():
+    batch = LearningBatch("3dof-hit", 1, actions="mallet", seed=4, reward="progress")
+    begin, total = batch.learner.potential[0], 0.0
+    for action in walk(batch, 300):
+        told = batch.step(action)
+        if told.terminated[0] or told.truncated[0]:
+            break
+        assert told.rewards[0] >= 0.0
+        total += told.rewards[0]
+        assert total == pytest.approx(batch.learner.best[0] - begin)
+    assert total > 0.0 and told.rewards[0] >= (SUCCESS if told.success[0] else FAILURE)
+
+
 def test_success_alone_can_be_the_reward_and_the_environments_own_the_observation():
     batch = LearningBatch("3dof-defend", 2, reward="success", observations="raw", seed=0)
     assert batch.reset(seed=3).observations[0].tobytes() == envs.make("3dof-defend").reset(seed=3).tobytes()

@@ -119,7 +119,7 @@ def test_a_network_of_another_robot_is_refused(finished):
     with pytest.raises(ConfigurationError, match=r"maps 49 numbers to 7.*has 35 and 2"):
         LearnedPlayer(info, joints)
     (path / "air_hockey_agent" / "policy.yaml").rename(path / "kept")
-    with pytest.raises(ConfigurationError, match="cannot read the policy"):
+    with pytest.raises(ConfigurationError, match=r"cannot read .*policy\.yaml"):
         build_agent(path, info)
     (path / "kept").rename(path / "air_hockey_agent" / "policy.yaml")
 

@@ -179,9 +179,9 @@ def test_same_seed_same_parameters_whatever_the_jobs_and_after_a_kill(tmp_path):
 
 def outcomes(asked: Settings, jobs, start=TUNED):
     from airhockey import envs
+    from airhockey.agents.settings import plain
     from airhockey.envs.disturbances import load_disturbances
     from airhockey.learning.pgpe.records import PgpeManifest
-    from airhockey.learning.pgpe.trainable import plain
 
     profile = load_disturbances(asked.disturbances)
     manifest = PgpeManifest(

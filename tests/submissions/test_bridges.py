@@ -67,7 +67,9 @@ def test_what_was_dropped_is_back(code: str) -> None:
     assert "Error" in run(code, "")  # without the bridges there is none
 
 
-@pytest.mark.parametrize("before", ["", "import torch\n"], ids=["torch later", "torch before"])
+@pytest.mark.parametrize(
+    "before", [pytest.param("", marks=pytest.mark.long), "import torch\n"], ids=["torch later", "torch before"]
+)
 def test_weights_saved_on_a_gpu_load(before: str) -> None:
     pytest.importorskip("torch")
     assert run(TORCH, before + "from airhockey.compat import bridges; bridges.install()\n") == ""

@@ -157,7 +157,11 @@ def test_a_checkout_plays_what_its_configuration_names_on_both_sides(monkeypatch
         ("helper_out_of_reach", ["does not play, because", "training/tactics", "the entry's cause", "mend the import"]),
         ("package_missing", ["does not play, because", "this installation's cause", "what to do: install it"]),
         ("size_one_arrays", ["the libraries' cause", "x.item()", "--python PATH"]),
-        ("template_as_it_was", ["NotImplementedError", "the entry's cause", "name in env what the agent plays"]),
+        pytest.param(
+            "template_as_it_was",
+            ["NotImplementedError", "the entry's cause", "name in env what the agent plays"],
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_one_line_says_why_whose_cause_and_what_to_do(name: str, words: list[str]) -> None:
@@ -178,3 +182,17 @@ def test_an_environment_that_there_is_not_is_named(bad: Callable[..., str]) -> N
     (folder / "agent_config.yml").write_text("env: [7dof-hot]\n")
     verdict = validate(folder, "process", LIMITS, steps=3)
     assert "7dof-hit" in verdict.problems[0].what and verdict.problems[0].where == "env of agent_config.yml"
+
+
+def test_a_checkout_that_git_lfs_has_not_filled_is_told_so(bad: Callable[..., str]) -> None:
+    pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n"
+    folder = Path(bad(building="np.load('weights.npy')"))
+    (folder / "agent_config.yml").write_text("env: 3dof-hit\n")
+    (folder / "weights.npy").write_text(pointer)
+    verdict = validate(folder, "process", LIMITS, steps=2)
+    assert "'weights.npy' is not there: git lfs has left a pointer" in verdict.conclusion
+    assert "git has not fetched all of it); what to do: git lfs pull" in verdict.conclusion
+    builder = folder / "agent_builder.py"
+    builder.write_text(builder.read_text().replace("np.load('weights.npy')", "pass"))
+    verdict = validate(folder, "process", LIMITS, steps=2)
+    assert not verdict.problems and any("git lfs" in note for note in verdict.notes)

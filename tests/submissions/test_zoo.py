@@ -173,6 +173,22 @@ def test_last_steps_array_is_its_own(env: Any, sandbox: None, bad: Callable[...,
     agent.close()
 
 
+FILLING = """frame = sys._getframe()
+while 'nonce' not in frame.f_locals: frame = frame.f_back
+names = frame.f_locals
+again = os.open(f"/proc/self/fd/{names['requests']}", os.O_WRONLY | os.O_NONBLOCK)
+try:
+    while True: os.write(again, bytes(4096))
+except BlockingIOError: os.write(names['replies'], b'K' + names['nonce'])
+time.sleep(1000)"""
+
+
+def test_a_pipe_that_it_filled_keeps_nobody_waiting(env: Any, bad: Callable[..., str]) -> None:
+    ends(
+        bad(FILLING), env, "process", AgentError, "filled the pipe"
+    )  # in a sandbox of root's the pipe is another user's
+
+
 def test_a_message_to_the_evaluator_is_data(env: Any, sandbox: None, bad: Callable[..., str]) -> None:
     spoof = "import gc, fcntl\nfor f in range(3, 20):\n    try: os.write(f, b'!')\n    except OSError: pass"
     agent = build_agent(bad(spoof), env, mode="sandbox", limits=LIMITS)

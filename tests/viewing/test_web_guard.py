@@ -3,14 +3,12 @@
 import pytest
 from websockets.datastructures import Headers
 
-from airhockey.envs.rendering.web_guard import Guard
+from airhockey.envs.rendering.guard import Guard
 
 
 @pytest.fixture
 def guard() -> Guard:
-    guard = Guard("127.0.0.1")
-    guard.watch(8080)
-    return guard
+    return Guard("127.0.0.1", 8080)
 
 
 @pytest.mark.parametrize(
@@ -44,7 +42,7 @@ def test_the_token_or_the_cookie_that_it_gives(guard: Guard) -> None:
 
 
 def test_two_viewers_have_two_tokens() -> None:
-    assert Guard("::1").token != Guard("::1").token
+    assert Guard("::1", 1).token != Guard("::1", 2).token
 
 
 def test_a_running_viewer_answers_only_those(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,19 +1,12 @@
 """What can be tuned about the low-level controller: `iiwa.yaml` and `planar.yaml` beside this module."""
 
-import dataclasses
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
-
-import yaml
 
 from airhockey.agents.parameters import convert, load_parameters
+from airhockey.agents.settings import asked_of, plain, with_settings
 from airhockey.envs.specs import RobotSpec
-from airhockey.errors import ConfigurationError
 
 
 @dataclass(frozen=True)
@@ -57,52 +50,10 @@ class ControlParameters:
     link_height_gain: float
 
 
-_PREFIX = "control."
-_settings: ContextVar[dict[str, Any]] = ContextVar("control_settings", default={})  # noqa: B039 - replaced, never changed
-
-
 def control_parameters(spec: RobotSpec) -> ControlParameters:
-    """The package's parameters for a robot, with what `settings_in_use` changes about them."""
-    own = _own_parameters(spec)
-    settings = _settings.get()
-    return convert(ControlParameters, _plain(own) | settings, "--set control") if settings else own
-
-
-@contextmanager
-def settings_in_use(settings: Sequence[str]) -> Iterator[None]:
-    """Players that are built meanwhile have other parameters of their controller.
-
-    Args:
-        settings: As in "control.solver=osqp".
-
-    Raises:
-        ConfigurationError: A setting has no such form.
-    """
-    token = _settings.set(parsed(settings))
-    try:
-        yield
-    finally:
-        _settings.reset(token)
-
-
-def parsed(settings: Sequence[str]) -> dict[str, Any]:
-    """Parameter -> value of settings as in "control.solver=osqp"; raises `ConfigurationError` for another form or name."""
-    known = [field.name for field in dataclasses.fields(ControlParameters)]
-    values: dict[str, Any] = {}
-    for setting in settings:
-        name, equals, value = setting.partition("=")
-        key = name.removeprefix(_PREFIX)
-        if not equals or not name.startswith(_PREFIX) or key not in known:
-            raise ConfigurationError(
-                f"--set {setting!r}: write control.NAME=VALUE, as in control.solver=osqp; the names are {', '.join(known)}"
-            )
-        values[key] = yaml.safe_load(value)
-    return values
-
-
-def _plain(parameters: ControlParameters) -> dict[str, Any]:
-    values = dataclasses.asdict(parameters)
-    return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
+    """The package's parameters for a robot, with what `--set control.…` changes about them."""
+    own, asked = _own_parameters(spec), asked_of("control")
+    return convert(ControlParameters, with_settings(plain(own), asked), "--set control") if asked else own
 
 
 @cache

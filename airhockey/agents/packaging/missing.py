@@ -3,6 +3,7 @@
 import sys
 
 from airhockey.agents.packaging.checkout import BUILDER, PACKAGE, Checkout
+from airhockey.agents.packaging.unfetched import empty_submodule
 from airhockey.errors import AirHockeyError, ConfigurationError, MissingDependencyError
 
 CHALLENGE = "air_hockey_challenge"
@@ -13,13 +14,13 @@ _DISTRIBUTIONS = {
     **{
         name: name
         for name in (
-            "absl-py", "casadi", "cloudpickle", "cma", "cvxopt", "cvxpy", "daqp", "deap", "dill", "dm_control", "einops",
-            "filterpy", "flax", "gymnasium", "h5py", "imageio", "jax", "joblib", "lightning", "matplotlib", "mediapy",
-            "moviepy", "mujoco", "networkx", "nevergrad", "nlopt", "numba", "numpy", "onnx", "onnxruntime", "optax", "optuna",
-            "osqp", "pandas", "pettingzoo", "plotly", "proxsuite", "psutil", "pybullet", "pygame", "pyglet", "pygmo",
-            "pyswarms", "qpsolvers", "quadprog", "ray", "scipy", "scs", "seaborn", "shapely", "stable_baselines3",
-            "sb3_contrib", "sympy", "tensorboard", "tensorboardX", "tensorflow", "termcolor", "tianshou", "toppra", "torchrl",
-            "tqdm", "transformers", "transforms3d", "trimesh", "wandb", "zmq",
+            "absl-py", "casadi", "chex", "cloudpickle", "cma", "cpprb", "crocoddyl", "cvxopt", "cvxpy", "d3rlpy", "daqp", "deap",
+            "dill", "dm_control", "einops", "elements", "filterpy", "flax", "gymnasium", "h5py", "imageio", "jax", "joblib",
+            "lightning", "matplotlib", "mediapy", "moviepy", "mujoco", "networkx", "nevergrad", "nlopt", "numba", "numpy", "onnx",
+            "onnxruntime", "optax", "optuna", "osqp", "pandas", "pettingzoo", "plotly", "proxsuite", "psutil", "pybullet",
+            "pygame", "pyglet", "pygmo", "pyswarms", "qpsolvers", "quadprog", "ray", "ruckig", "sb3_contrib", "scipy", "scs",
+            "seaborn", "shapely", "stable_baselines3", "sympy", "tensorboard", "tensorboardX", "tensorflow", "termcolor",
+            "tianshou", "toppra", "torchrl", "tqdm", "transformers", "transforms3d", "trimesh", "wandb", "zmq",
         )
     },
     "PIL": "pillow",
@@ -32,6 +33,8 @@ _DISTRIBUTIONS = {
     "mushroom_rl": _MUSHROOM,
     "omegaconf": "omegaconf",
     "pinocchio": "pin",
+    "pydrake": "drake",
+    "pytorch_lightning": "pytorch-lightning",
     "skimage": "scikit-image",
     "sklearn": "scikit-learn",
     "tensordict": "tensordict",
@@ -49,6 +52,12 @@ def missing_module(checkout: Checkout, error: ModuleNotFoundError) -> AirHockeyE
         return MissingDependencyError(f"{agent} imports {full!r}, which the official package does not have either")
     if name == PACKAGE:
         return ConfigurationError(f"{agent} imports {full!r}, but has no such file")
+    unfetched = empty_submodule(checkout.root, full)
+    if unfetched is not None:
+        return ConfigurationError(
+            f"{agent} imports {full!r}, which is in the git submodule {unfetched!r}, whose folder is empty: git submodule "
+            "update --init --recursive fetches it"
+        )
     if "." in full and name in sys.modules:
         return _no_submodule(checkout, agent, full)
     place = checkout.has_module(name)
@@ -76,7 +85,7 @@ def _no_submodule(checkout: Checkout, agent: str, full: str) -> AirHockeyError:
     """A package is there, the part of it that is imported is not."""
     name = full.partition(".")[0]
     version = getattr(sys.modules[name], "__version__", None)
-    if checkout.has_module(name) is not None:
+    if checkout.has_module(name) is not None or (checkout.root / name).is_dir():
         return ConfigurationError(f"{agent} imports {full!r}, but has no such file")
     which = f"{name} {version}" if version else f"the installed {name}"
     return MissingDependencyError(

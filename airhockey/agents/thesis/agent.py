@@ -62,7 +62,7 @@ class ThesisAgent(AgentBase):
         self._controller = JointController(ArmKinematics(spec), Workspace.of(env_info), self._dt, control)
         self._watch = TableWatch(env_info)
         self._clock = SideClock(self._dt)
-        self._in_game = task_of(env_info) == "tournament"
+        self._watches_clock = task_of(env_info) == "tournament" and p.switcher.hurry
         self._opponent = OpponentWatch(p.opponent_rate, self._dt)
         policies: dict[Task, Policy] = {
             Task.HOME: HomePolicy(p.home, p.hit.theta),
@@ -75,7 +75,7 @@ class ThesisAgent(AgentBase):
         tasks = TASKS.get(task_of(env_info), TASKS["tournament"])
         self._switcher = Switcher(p.switcher, tasks)
         self._early = p.switcher.leave_home_early
-        self._machine = StateMachine()
+        self._machine = StateMachine(p.state_machine)
         self.reset()
 
     def reset(self) -> None:
@@ -101,7 +101,7 @@ class ThesisAgent(AgentBase):
         controller = self._controller
         puck, tip, opponent = self._watch.see(observation, controller.tip_position())
         self._opponent.see(opponent)
-        held = self._clock.see(float(puck.state[0])) if self._in_game else 0.0
+        held = self._clock.see(float(puck.state[0])) if self._watches_clock else 0.0
         return Situation(puck, tip, controller.tip_velocity(), opponent, self._dt, move=controller.move, held=held)
 
     def _choose(self, now: Situation) -> Skill:

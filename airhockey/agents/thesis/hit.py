@@ -67,6 +67,8 @@ class HitParameters:
         patience: Steps that a gap is waited for beside an opponent that repeats itself.
         hesitation: Steps that a gap is waited for beside another one.
         slow_down: Share of its velocity that the end-effector keeps in each step of the slow-down.
+        keep_ds: The slow-down goes on with the acceleration's ds, as printed (4.5), instead of braking.
+        longest_slow_down: Steps after which such a slow-down is over.
         struck_speed: Of the puck, which shows that it was hit, in [m]/[s].
         longest_strike: Steps after which an acceleration is given up.
         rest_speed: Speed at which the slow-down is over, in [m]/[s].
@@ -93,6 +95,8 @@ class HitParameters:
     struck_speed: float
     longest_strike: float
     rest_speed: float
+    keep_ds: bool = False
+    longest_slow_down: float = 50.0
 
 
 def correction(beta: float, y_puck: float) -> float:
@@ -234,7 +238,12 @@ class HitPolicy:
         p = self._parameters
         puck, gamma = self._aim(now)
         off = correction(polar(puck, now.tip, gamma).beta, puck[1])
-        turn = radians(_side(puck) * d_beta(p.theta, "slow-down", self._t_phase, now.dt, off))
+        turn = _side(puck) * d_beta(p.theta, "slow-down", self._t_phase, now.dt, off)
+        if p.keep_ds:
+            here = polar(puck, now.tip, gamma)
+            ahead = cartesian(puck, Polar(here.beta + turn, here.radius - self._ds), gamma)
+            return Move(ahead, self._t_phase > p.longest_slow_down or puck[0] > 0.0)
+        turn = radians(turn)
         rotation = np.array([[cos(turn), -sin(turn)], [sin(turn), cos(turn)]])
         velocity = p.slow_down * rotation @ now.tip_velocity
         target = now.tip + 0.5 * now.dt * (velocity + now.tip_velocity)

@@ -32,12 +32,14 @@ class HomeParameters:
         longest_step: Of the end-effector, in [m].
         arrived: Distance from home that counts as home, in [m].
         clearance: Gap between mallet and puck that is kept on the way, in [m].
+        curved: On the curve of (4.14) to (4.16); otherwise straight, as before the thesis had them (tables 5.4 and 5.5).
     """
 
     step_size: float
     longest_step: float
     arrived: float
     clearance: float
+    curved: bool = True
 
 
 def correction(beta: float, y_target_point: float) -> float:
@@ -69,6 +71,8 @@ class HomePolicy:
             self.phase = "arrived"
             return Move(self._keep_clear(now, limited_step(now.tip, self._target, 0.1 * here.radius)), finished=True)
         self.phase = "return"
+        if not p.curved:
+            return Move(limited_step(now.tip, self._target, p.longest_step))
         below = float(self._target[1] - now.tip[1])
         turn = d_beta(self._theta, now.dt, correction(here.beta, below))
         beta = here.beta + turn if below >= 0 else here.beta - turn

@@ -4,12 +4,15 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from airhockey.agents.control.parameters import ControlParameters
-from airhockey.agents.parameters import load_parameters
+from airhockey.agents.parameters import convert, load_parameters
+from airhockey.agents.settings import asked_of, plain, with_settings
 from airhockey.agents.thesis.defend import DefendParameters
 from airhockey.agents.thesis.hit import HitParameters
 from airhockey.agents.thesis.home import HomeParameters
 from airhockey.agents.thesis.prepare import PrepareParameters
 from airhockey.agents.thesis.switcher import SwitcherParameters
+
+_FOLDER = Path(__file__).parent
 
 
 @dataclass(frozen=True)
@@ -37,6 +40,7 @@ class ThesisParameters:
         hit, defend, prepare, home, switcher: Their own.
         opponent_rate: Angular rate at which an opponent that repeats itself is expected to, in [rad]/[s].
         margins: Of the joint controller.
+        state_machine: A task is changed only through home (4.3.2); otherwise to whatever the switcher suggests.
     """
 
     hit: HitParameters
@@ -46,14 +50,27 @@ class ThesisParameters:
     switcher: SwitcherParameters
     opponent_rate: float
     margins: Margins = Margins()
+    state_machine: bool = True
+
+
+@dataclass(frozen=True)
+class ThesisSettings(ThesisParameters):
+    """What `--set thesis.…` can change: all of them, and the file that they come from.
+
+    Attributes:
+        parameters: As `thesis_parameters` takes it.
+    """
+
+    parameters: str = "tuned"
 
 
 def thesis_parameters(source: str | Path | ThesisParameters = "tuned") -> ThesisParameters:
-    """The package's `thesis` or `tuned`, a file of the user's, or what somebody else has made already.
+    """The package's `thesis` or `tuned`, a file of the user's, or what somebody else has made already; then `--set thesis.…`.
 
     Raises:
         ConfigurationError: No such file, or one that does not fit.
     """
-    if isinstance(source, ThesisParameters):
-        return source
-    return load_parameters(ThesisParameters, source, Path(__file__).parent)
+    asked = asked_of("thesis")
+    source = asked.pop("parameters", source)
+    own = source if isinstance(source, ThesisParameters) else load_parameters(ThesisParameters, source, _FOLDER)
+    return convert(ThesisParameters, with_settings(plain(own), asked), "--set thesis") if asked else own

@@ -19,7 +19,9 @@ class StateMachine:
         state: The task being played.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, through_home: bool = True) -> None:
+        """Without `through_home` it is left out: whatever the switcher suggests is played (table 5.4)."""
+        self._through_home = through_home
         self.reset()
 
     def reset(self) -> None:
@@ -34,7 +36,7 @@ class StateMachine:
             finished: The present task sent its signal of completion.
         """
         if finished:
-            self.state = following(self.state, suggested)
+            self.state = following(self.state, suggested) if self._through_home else suggested
         return self.state
 
 

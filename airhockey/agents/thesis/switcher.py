@@ -27,6 +27,8 @@ class SwitcherParameters:
         side_tolerance, end_tolerance: Of `enough_space`, in [m].
         look_ahead: `enough_space` is asked of where the puck will be so much later, in [s].
         leave_home_early: The way home may be broken off for the next task; otherwise home is reached first.
+        decide_once: Whether a puck that has come to rest can be played is decided once (`RestingPuck`); otherwise in every step.
+        hurry: A puck that has been on the own side for long is hit wherever the mallet fits behind it.
     """
 
     defend_speed: float
@@ -36,6 +38,8 @@ class SwitcherParameters:
     end_tolerance: float
     look_ahead: float
     leave_home_early: bool
+    decide_once: bool = True
+    hurry: bool = True
 
 
 class Switcher:
@@ -64,7 +68,7 @@ class Switcher:
             return Task.HOME
         if now.held > HURRY and enough_space(puck.position):  # in a hurry the mallet need only fit behind the puck
             return Task.HIT
-        if self._resting.playable is not None:
+        if p.decide_once and self._resting.playable is not None:
             return Task.HIT if self._resting.playable else Task.PREPARE
         later = puck.state.copy()
         advance(later, p.look_ahead, self._constants)

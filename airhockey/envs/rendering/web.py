@@ -14,7 +14,8 @@ from typing import Any
 
 from mujoco.studio import launch_thread, viewer_protocol, web_viewer
 
-from airhockey.envs.rendering.web_guard import Guard
+from airhockey.envs.rendering import web_guard
+from airhockey.envs.rendering.guard import Guard
 from airhockey.errors import ConfigurationError
 
 _STARTING = 30.0  # [s] that a viewer may take to begin
@@ -29,7 +30,7 @@ class BoundViewer(web_viewer.WebViewer):
     """
 
     def __init__(self, host: str, *arguments: Any, **named: Any) -> None:
-        self._chosen_host, self.guard = host, Guard(host)
+        self._chosen_host = host
         super().__init__(*arguments, **named)
 
     @property
@@ -42,7 +43,8 @@ class BoundViewer(web_viewer.WebViewer):
 
     def _start_server(self) -> None:
         """Start it under guard."""
-        self.guard.watch(self.port)
+        self.guard = Guard(self._chosen_host, self.port)
+        web_guard.watch(self.guard, self.port)
         super()._start_server()
 
     @property

@@ -188,6 +188,7 @@ class IsolatedAgent(NotCopyable, AgentHandle):
         """Start the process, with its pipes; what it prints counts with what others of this name have printed."""
         shared = channel.new_memory()
         their_requests, self._requests = os.pipe()
+        os.set_blocking(self._requests, False)  # over there the pipe can be filled: nobody waits for room in it
         self._replies, their_replies = os.pipe()
         output, their_output = os.pipe()
         self._output = Output(output, name)
@@ -263,6 +264,9 @@ class IsolatedAgent(NotCopyable, AgentHandle):
             os.write(self._requests, word + nonce)
         except BrokenPipeError:
             raise self._exit_error() from None
+        except BlockingIOError:
+            self.close()
+            raise AgentError("it filled the pipe of the evaluator's requests and was stopped") from None
         reply = self._receive(patience)
         if not reply:
             raise self._exit_error()

@@ -19,6 +19,7 @@ from airhockey.evaluator.isolation.restrict import Restrictions
 def main() -> None:
     """Serve until the evaluator hangs up."""
     requests, replies, descriptor = (int(argument) for argument in sys.argv[1:4])
+    del sys.argv[1:]  # an agent that reads the command line is not to find ours
     memory = Memory(descriptor)
     os.close(descriptor)
     for pipe in (requests, replies):
@@ -103,11 +104,7 @@ def _problem(action: Any, values: Any) -> str | None:
 def _error_text(failure: BaseException) -> dict[str, str]:
     from airhockey.evaluator.isolation.failures import describe
 
-    try:
-        what = describe(failure)
-    except BaseException:  # an exception whose text raises
-        what = type(failure).__name__
-    return {"what": what.encode("utf-8", "replace").decode()[:1000]}
+    return {"what": describe(failure).encode("utf-8", "replace").decode()[:1000]}
 
 
 def seed(words: list[int] | None) -> None:

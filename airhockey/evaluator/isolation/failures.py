@@ -2,6 +2,7 @@
 
 import contextlib
 import signal
+import sys
 import traceback
 
 from airhockey.errors import AirHockeyError
@@ -24,17 +25,21 @@ class AgentTimeout(AgentError):
 
 
 def agent_failures() -> tuple[type[BaseException], ...]:
-    """What counts as the agent's failure when its code is called.
+    """What counts as the agent's failure when its code is called, for an `except`, of what was just raised: everything.
 
-    A KeyboardInterrupt is the user's, unless this process ignores the user's: then only the agent can have raised it.
+    But a KeyboardInterrupt is the user's, unless this process ignores the user's: then only the agent can have raised it.
     """
+    is_the_users = isinstance(sys.exc_info()[1], KeyboardInterrupt)
     ignored = signal.getsignal(signal.SIGINT) is signal.SIG_IGN
-    return (Exception, SystemExit, KeyboardInterrupt) if ignored else (Exception, SystemExit)
+    return (Exception,) if is_the_users and not ignored else (BaseException,)
 
 
 def describe(failure: BaseException) -> str:
     """One line: the kind of error, what it says, and for an error that is not ours the file and line."""
-    text = " ".join(str(failure).split())[:300]
+    try:
+        text = " ".join(str(failure).split())[:300]
+    except BaseException:
+        text = "its text cannot be had: it raises"
     if isinstance(failure, AgentRaised):
         return text  # described where it was raised
     place = ""

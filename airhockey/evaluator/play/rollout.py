@@ -69,7 +69,7 @@ class Rollout:
         seen, seats = self.observation, self.seats
         if len(seats) == 1:
             seat = seats[0]
-            seat.act(seen, number)
+            seat.act(seen.copy(), number)
             if seat.failure is not None:
                 return self._failed(number)
             action: Any = seat.action

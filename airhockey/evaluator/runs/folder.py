@@ -9,7 +9,7 @@ Each kind of run says in a class of its own what it is called, and what else lie
 
 import contextlib
 import os
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, ClassVar, Generic, Self, TypeVar
 
@@ -18,6 +18,7 @@ import msgspec
 from airhockey import envs
 from airhockey.envs.copying import NotCopyable
 from airhockey.envs.disturbances import load_disturbances
+from airhockey.errors import ConfigurationError
 from airhockey.evaluator.runs import journal
 from airhockey.evaluator.runs.disk import begin_folder, disk_errors, lock_folder, write_record
 from airhockey.evaluator.runs.inputs import check_unchanged, hashes_of
@@ -25,11 +26,15 @@ from airhockey.evaluator.runs.journal import Record
 from airhockey.evaluator.runs.manifest import (
     Manifest,
     check_same_run,
+    check_seal,
     check_versions,
+    note_on_profile,
     now,
     option_of,
     read_manifest,
+    sealed,
 )
+from airhockey.inputs.names import shown
 
 Options = TypeVar("Options")
 
@@ -41,20 +46,24 @@ class RunFolder(NotCopyable, Generic[Options, Record]):
         name: The manifest's file name.
         options_type, record_type: What the options and the journal's lines are.
         manifest_type: `Manifest`, or a kind of it.
+        has_seal: Whether a manifest that was edited is known by its seal.
         path: The folder.
         manifest: What the run is.
         records: Of the finished work.
+        notes: What is to be told of a run that is taken up again.
     """
 
     name: ClassVar[str]
     options_type: ClassVar[type]
     record_type: ClassVar[type]
     manifest_type: ClassVar[Any] = Manifest
+    has_seal: ClassVar[bool] = True
     manifest: Manifest[Options]
 
     def __init__(self, path: Path, asked: Mapping[str, Any] | None = None) -> None:
         """Use `begin`, `resume` or `open`."""
         self.path = path
+        self.notes: list[str] = []
         self._lock = lock_folder(path)
         with self.released_on_error():
             self.manifest = self.read(path)
@@ -62,6 +71,9 @@ class RunFolder(NotCopyable, Generic[Options, Record]):
                 check_same_run(path, self.manifest, asked)
                 check_versions(path, self.manifest.versions, self.versions())
                 check_unchanged(path, self.manifest.inputs)
+                if self.has_seal:
+                    check_seal(path, self.name, self.manifest)
+                self.notes += filter(None, [note_on_profile(path, self.manifest)])
             with disk_errors(path):
                 self.records: list[Record] = self.recover()
 
@@ -108,7 +120,7 @@ class RunFolder(NotCopyable, Generic[Options, Record]):
     @classmethod
     def create(cls, path: Path, manifest: Manifest[Options]) -> Self:
         """Begin what a manifest says; raises `ConfigurationError`."""
-        begin_folder(path, cls.name, manifest)
+        begin_folder(path, cls.name, sealed(manifest))
         return cls(path)
 
     @classmethod
@@ -157,9 +169,22 @@ class RunFolder(NotCopyable, Generic[Options, Record]):
 
     def recover(self) -> list[Record]:
         """The records of the finished work; what a kill left half done goes away."""
-        records: list[Record] = journal.read_journal(self.path, self.record_type).records
+        records: list[Record] = self.believed(journal.read_journal(self.path, self.record_type).records)
         journal.mend(self.path, records)
         return records
+
+    def believed(self, records: list[Record]) -> list[Record]:
+        """The records that are what was written; the work of the others is done again."""
+        return records
+
+    def check_work(self, work: Iterable[Hashable]) -> None:
+        """What is finished must be part of the run's work, of which these are the keys; raises `ConfigurationError`."""
+        foreign = self.done.difference(work)
+        if foreign:
+            raise ConfigurationError(
+                f"the journal in {str(self.path)!r} holds what is no part of this run ({shown(min(map(str, foreign)))}):"
+                " it was edited, or comes from another run; put its content back, or begin a new run with another --out"
+            )
 
     def keep(self, *records: Record) -> None:
         """Keep records; they are on the disk when this returns, and what they tell of is finished."""
@@ -170,7 +195,7 @@ class RunFolder(NotCopyable, Generic[Options, Record]):
     def change(self, options: Options) -> None:
         """Replace the options of a run that may be extended."""
         inputs = hashes_of(options) | self.manifest.inputs
-        manifest = msgspec.structs.replace(self.manifest, options=options, inputs=inputs)
+        manifest = sealed(msgspec.structs.replace(self.manifest, options=options, inputs=inputs))
         with disk_errors(self.path):
             write_record(self.path / self.name, manifest)
         self.manifest = manifest

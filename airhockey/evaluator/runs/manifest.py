@@ -1,9 +1,10 @@
 """The manifest: what a run is, written when it begins; whoever takes it up again must mean the same run.
 
-run.json  match.json  tournament.json  train.json
+run.json  match.json  tournament.json  train.json  reproduction.json
 """
 
 import datetime
+import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -14,8 +15,12 @@ from airhockey.envs.disturbances import Disturbances, load_disturbances
 from airhockey.errors import ConfigurationError
 
 Options = TypeVar("Options")
+Kind = TypeVar("Kind", bound="Manifest[Any]")
 RUN, MATCH, TOURNAMENT, TRAINING = "run.json", "match.json", "tournament.json", "train.json"
-KINDS = {RUN: "run", MATCH: "match", TOURNAMENT: "tournament", TRAINING: "training run"}
+REPRODUCTION = "reproduction.json"
+KINDS = {
+    RUN: "run", MATCH: "match", TOURNAMENT: "tournament", TRAINING: "training run", REPRODUCTION: "reproduction"
+}  # fmt: skip
 """A manifest's file name -> what it is the manifest of."""
 
 
@@ -29,6 +34,7 @@ class Manifest(msgspec.Struct, Generic[Options], frozen=True, kw_only=True):
         created: Local time, ISO 8601.
         format: Of the run's folder.
         inputs: Path of an agent or a file -> SHA-256 of its content.
+        seal: SHA-256 of everything else but the time; "" in manifests that are older than this field.
     """
 
     options: Options
@@ -37,6 +43,7 @@ class Manifest(msgspec.Struct, Generic[Options], frozen=True, kw_only=True):
     created: str
     format: int = 1
     inputs: dict[str, str] = {}
+    seal: str = ""
 
 
 class TrainingManifest(Manifest[Options], Generic[Options], frozen=True, kw_only=True):
@@ -48,6 +55,35 @@ class TrainingManifest(Manifest[Options], Generic[Options], frozen=True, kw_only
 def now() -> str:
     """Local time, ISO 8601."""
     return datetime.datetime.now().astimezone().isoformat(timespec="seconds")
+
+
+def sealed(manifest: Kind) -> Kind:
+    """The manifest as it is written: it shows when somebody edits it afterwards."""
+    bare = msgspec.structs.replace(manifest, seal="", created="")
+    return msgspec.structs.replace(manifest, seal=hashlib.sha256(msgspec.json.encode(bare)).hexdigest())
+
+
+def check_seal(path: Path, name: str, manifest: Manifest[Any]) -> None:
+    """What goes on must be what was begun; raises `ConfigurationError` for a manifest that was edited."""
+    if manifest.seal and sealed(manifest).seal != manifest.seal:
+        raise ConfigurationError(
+            f"{str(path / name)!r} was edited since it was written: one result would come from two runs; put its content back, "
+            "or begin a new run with another --out"
+        )
+
+
+def note_on_profile(path: Path, manifest: Manifest[Any]) -> str | None:
+    """What to tell about a disturbance file that is another than when the run began; None where it is the same."""
+    name = option_of(manifest.options, "disturbances")
+    try:
+        if load_disturbances(name) == manifest.profile:
+            return None
+        what = "was edited"
+    except ConfigurationError:
+        what = "cannot be read any more"
+    return (
+        f"{name!r} {what} since the run in {str(path)!r} began, which goes on with the disturbances that it began with"
+    )
 
 
 def read_manifest(

@@ -12,12 +12,12 @@ from airhockey.agents.learned.features import new_sights, width_of
 from airhockey.envs.disturbances import Disturbances
 from airhockey.envs.vector.environment import Batch, Seeds, VectorEnvironment
 from airhockey.errors import ActionError, ConfigurationError, unknown
+from airhockey.learning.envs.rewards import REWARDS
 from airhockey.learning.envs.stepping import Learner, begin_one, play_many, warm_up
 
 Array = NDArray[np.float64]
 
 OBSERVATIONS = ("features", "raw")
-REWARDS = ("shaped", "success")
 
 
 class LearningBatch(VectorEnvironment):
@@ -27,7 +27,7 @@ class LearningBatch(VectorEnvironment):
         name, num_envs, disturbances, edition_name, threads, seed: See `VectorEnvironment`. One player's tasks only.
         actions: "joints", "tip" or "mallet" (`airhockey.agents.learned.actions`).
         observations: "features" (`airhockey.agents.learned.features`) or "raw", the environment's own.
-        reward: "shaped" (`rewards`), or "success": 1 for a success at the end of an episode, else 0.
+        reward: "shaped", "progress" or "success", which is 1 for a success at the end of an episode, else 0 (`rewards`).
         repeat: Control steps that an action lasts.
         discount: γ of the shaped reward, for one action: the learner's own.
 
@@ -97,17 +97,23 @@ class LearningBatch(VectorEnvironment):
         return batch._replace(observations=seen[0], final_observations=seen[1])
 
     def _prepare(self) -> None:
-        single, n = self.single, self.num_envs
+        single = self.single
         if single.n_players == 2:
-            raise ConfigurationError(f"{single.name} has two players; a learner's batch is of a task with one")
+            raise ConfigurationError(
+                f"{single.name} has two players; a learner's batch is of a task with one (games: `learning.envs.game`)"
+            )
+        self._prepare_learner()
+
+    def _prepare_learner(self) -> None:
+        single, n = self.single, self.num_envs
         actions, observations, reward, repeat, discount = self._choice
         controls = new_controls(actions, spec_of(single.env_info), n)
         joints = actions == "joints"
         sights = new_sights(single.env_info, joints, n)
         part = single.constraints_slice
         self.learner = Learner(
-            repeat, single.horizon, discount, reward == "shaped", controls, sights,
-            np.zeros((n, single.true_observation.size)), self._steps, np.zeros(n), np.zeros(n),
+            repeat, single.horizon, discount, REWARDS.index(reward), controls, sights,
+            np.zeros((n, single.true_observation.size)), self._steps, np.zeros(n), np.zeros(n), np.zeros(n),
             np.array([part.start, part.stop]), np.zeros(n, np.int64), np.zeros(n, np.int64),
         )  # fmt: skip
         warm_up(self.fleet, self.learner)
@@ -144,4 +150,4 @@ class LearningBatch(VectorEnvironment):
         controls, sights, learner = self.learner.controls, self.learner.sights, self.learner
         commands = [controls.q, controls.velocity, controls.tip, controls.tip_velocity]
         seen = [sights.watches, sights.puck, sights.mallets, sights.recent]
-        return [*commands, *seen, learner.raw, learner.potential, learner.played, learner.violated]
+        return [*commands, *seen, learner.raw, learner.potential, learner.best, learner.played, learner.violated]

@@ -21,3 +21,5 @@ each module has a `warm_up` for that.
 """
 compiled = compiler(_FOLDER, _SOURCES, error_model="numpy", _nrt=False)
 """Compile a function that is given whole environments. Counting references to all their arrays would take minutes to compile."""
+inlined = compiler(_FOLDER, _SOURCES, error_model="numpy", _nrt=False, inline="always")
+"""The same for a function with one caller, into which it is copied: a call would have hundreds of arguments."""

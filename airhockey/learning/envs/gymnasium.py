@@ -6,8 +6,10 @@
     vec = gymnasium.make_vec("airhockey/7dof-defend-tip-v0", num_envs=16, threads=2)
     env = gymnasium.make("airhockey/7dof-hit-mallet-v0", disturbances="server")
 
+    games = gymnasium.make_vec("airhockey/tournament-tip-v0", num_envs=8, opponents=["planner", "thesis"])
+
 Tasks are those of `airhockey.envs.gymnasium` of 2023, actions those of `airhockey.agents.learned.actions`. An observation is
-what `features` says, a reward what `rewards` says, and both can be chosen: see `LearningBatch`.
+what `features` says, a reward what `rewards` says, and both can be chosen: see `LearningBatch`; for games see `GameBatch`.
 """
 
 from typing import Any
@@ -23,18 +25,19 @@ from airhockey.envs.editions import edition
 from airhockey.envs.gymnasium import NAMESPACES, TASKS
 from airhockey.envs.vector.gymnasium import BatchVectorEnv
 from airhockey.learning.envs.batch import LearningBatch
+from airhockey.learning.envs.game import GameBatch
 
 Array = NDArray[Any]
 
-YEAR, REPEAT = "2023", 2
+YEAR, REPEAT, GAME = "2023", 2, "tournament"
 
 
 def learning_vector_env(
     name: str, num_envs: int, max_episode_steps: int | None = None, **choice: Any
 ) -> BatchVectorEnv:
     """A batch of a task, as Gymnasium's vector environment; `choice` is that of `LearningBatch`."""
-    batch = LearningBatch(name, num_envs, **choice)
-    longest = max_episode_steps if choice.get("repeat", REPEAT) == REPEAT else None
+    batch = _batch(name, num_envs, **choice)
+    longest = max_episode_steps if name == GAME or choice.get("repeat", REPEAT) == REPEAT else None
     return BatchVectorEnv(batch, *spaces_of(batch), longest)
 
 
@@ -52,7 +55,7 @@ class LearningEnv(gymnasium.Env[Array, Array]):
     metadata = {"render_modes": []}  # noqa: RUF012 - Gymnasium's own way to say so
 
     def __init__(self, name: str, **choice: Any) -> None:
-        self.batch = LearningBatch(name, 1, **choice)
+        self.batch = _batch(name, 1, **choice)
         self.observation_space, self.action_space = spaces_of(self.batch)
         self._begun: Array | None = None
 
@@ -75,6 +78,10 @@ class LearningEnv(gymnasium.Env[Array, Array]):
         return told.final_observations[0], float(told.rewards[0]), terminated, truncated, info
 
 
+def _batch(name: str, num_envs: int, **choice: Any) -> LearningBatch:
+    return GameBatch(num_envs, **choice) if name == GAME else LearningBatch(name, num_envs, **choice)
+
+
 def spaces_of(batch: LearningBatch) -> tuple[spaces.Box, spaces.Box]:
     """Observation and action of one environment."""
     if batch.new_batch().observations.dtype == np.float32:
@@ -86,8 +93,9 @@ def spaces_of(batch: LearningBatch) -> tuple[spaces.Box, spaces.Box]:
 
 def register() -> None:
     """Register every task with every kind of actions, once."""
-    longest = -(-edition(YEAR).horizon.task // REPEAT)
-    for name in TASKS[YEAR]:
+    horizon = edition(YEAR).horizon
+    for name in (*TASKS[YEAR], GAME):
+        longest = horizon.game if name == GAME else -(-horizon.task // REPEAT)
         for kind in ACTIONS:
             id_ = f"{NAMESPACES[YEAR]}/{name}-{kind}-v0"
             if id_ not in gymnasium.registry:

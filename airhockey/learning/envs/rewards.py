@@ -1,12 +1,16 @@
-"""Rewards on the way: potentials, whose differences γ Φ(after) − Φ(before) change no optimal policy, and the task's own end.
+"""Rewards on the way, in named terms, besides the task's own end.
 
 | term | when | value |
 |---|---|---|
 | success | the episode ends, and the task is accomplished | 10 |
 | failure | it ends, and is not | −1 |
-| shaping | every step | γ Φ(after) − Φ(before); Φ = 0 at the end of an episode |
+| shaping | every step, with the reward `shaped` | γ Φ(after) − Φ(before); Φ = 0 at the end of an episode |
+| progress | every step, with the reward `progress` | max(0, Φ(after) − the highest Φ of the episode so far) |
 
-These are the thesis's B and P (4.9) in units of 100, and a potential of each task:
+Success and failure are the thesis's B and P (4.9) in units of 100. Shaping changes no optimal policy (Ng, Harada and Russell
+1999), and so is worth no more than a good first guess of the values. Progress is a real reward of at most some five points: it
+pays for every step towards a success once, whatever happens later, which finds the first shot where chance hardly ever does.
+Each task has its Φ:
 
 | task | Φ |
 |---|---|
@@ -30,6 +34,9 @@ from airhockey.learning.envs.compiling import allocating
 
 Array = NDArray[np.float64]
 
+REWARDS = ("shaped", "progress", "success")
+"""What can be chosen: shaping, progress, or 1 for a success and nothing else; a number stands for each in compiled code."""
+SHAPED, PROGRESS = 0, 1
 SUCCESS, FAILURE = 10.0, -1.0
 _HIT, _DEFEND = KINDS.index("hit"), KINDS.index("defend")
 _STEP, _FARTHEST = 0.01, 2.0

@@ -12,8 +12,8 @@ from airhockey.envs.specs import JOINTS
 from airhockey.envs.tasks.verdicts import GOING_ON
 from airhockey.envs.tasks.verdicts import SUCCESS as SUCCEEDED
 from airhockey.envs.vector.stepping import DONE, Fleet, next_of, step_one
-from airhockey.learning.envs.compiling import compiled
-from airhockey.learning.envs.rewards import FAILURE, SUCCESS, potential
+from airhockey.learning.envs.compiling import compiled, inlined
+from airhockey.learning.envs.rewards import FAILURE, PROGRESS, SHAPED, SUCCESS, potential
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.int64]
@@ -26,11 +26,12 @@ class Learner(NamedTuple):
         repeat: Control steps that an action lasts.
         horizon: Control steps after which an episode ends.
         discount: γ of the shaping.
-        shaped: Whether the reward is `rewards`'; else 1 for a success at the end.
+        reward: Index into `rewards.REWARDS`.
         controls, sights: Of the actions and of the observations.
         raw: The environments' own observations. Shape (N, D).
         steps: Control steps since the episode's beginning. Shape (N,).
         potential: Φ after the latest step. Shape (N,).
+        best: The highest Φ of the episode. Shape (N,).
         rewards: Of the latest step. Shape (N,).
         constraints: Where the constraint values stand in what a step leaves: from, to. Shape (2,).
         played, violated: Control steps so far, and in how many of them a constraint was violated. Shapes (N,), (N,).
@@ -39,12 +40,13 @@ class Learner(NamedTuple):
     repeat: int
     horizon: int
     discount: float
-    shaped: bool
+    reward: int
     controls: Controls
     sights: Sights
     raw: Array
     steps: Counts
     potential: Array
+    best: Array
     rewards: Array
     constraints: Counts
     played: Counts
@@ -74,7 +76,7 @@ def play_many(fleet: Fleet, learner: Learner, chosen: Array, seen: Features, cou
         play_one(fleet, learner, i, chosen[i], seen[i])
 
 
-@compiled
+@inlined
 def play_one(fleet: Fleet, learner: Learner, i: int, action: Array, written: Features) -> None:
     """Let an action last for `repeat` control steps, or less where the episode ends."""
     ended = success = False
@@ -84,7 +86,7 @@ def play_one(fleet: Fleet, learner: Learner, i: int, action: Array, written: Fea
             return
         learner.steps[i] += 1
         _count_violation(learner, i, fleet.left[i])
-        see(learner.sights, learner.controls, i, learner.raw[i], False)
+        see(learner.sights, learner.controls, i, learner.raw[i], learner.steps[i] == 0)
         verdict = fleet.verdicts[i]
         success = verdict >= SUCCEEDED
         ended = verdict % SUCCEEDED != GOING_ON or learner.steps[i] >= learner.horizon
@@ -92,14 +94,24 @@ def play_one(fleet: Fleet, learner: Learner, i: int, action: Array, written: Fea
             break
     if written.size > 0:
         write(learner.sights, learner.controls, i, 1.0 - learner.steps[i] / learner.horizon, written)
-    if not learner.shaped:
-        learner.rewards[i] = 1.0 if ended and success else 0.0
-        return
-    before = learner.potential[i]
-    learner.potential[i] = 0.0 if ended else _potential(fleet, learner, i)
-    learner.rewards[i] = learner.discount * learner.potential[i] - before
+    learner.rewards[i] = _reward(fleet, learner, i, ended, success)
+
+
+@inlined
+def _reward(fleet: Fleet, learner: Learner, i: int, ended: bool, success: bool) -> float:
+    """See `rewards`."""
+    own = 0.0
     if ended:
-        learner.rewards[i] += SUCCESS if success else FAILURE
+        own = SUCCESS if success else FAILURE
+    if learner.reward == SHAPED:
+        before = learner.potential[i]
+        learner.potential[i] = 0.0 if ended else _potential(fleet, learner, i)
+        return float(own + learner.discount * learner.potential[i] - before)
+    if learner.reward == PROGRESS:
+        best = learner.best[i]
+        learner.best[i] = max(best, _potential(fleet, learner, i))
+        return float(own + learner.best[i] - best)
+    return 1.0 if ended and success else 0.0
 
 
 @compiled
@@ -107,8 +119,8 @@ def begin_one(fleet: Fleet, learner: Learner, i: int, written: Features) -> None
     """Begin an episode from the environment's own first observation."""
     n = learner.controls.q.shape[1]
     take_position(learner.controls, i, learner.raw[i, JOINTS : JOINTS + n])
-    see(learner.sights, learner.controls, i, learner.raw[i], True)
-    learner.potential[i] = _potential(fleet, learner, i)
+    see(learner.sights, learner.controls, i, learner.raw[i], learner.steps[i] == 0)
+    learner.potential[i] = learner.best[i] = _potential(fleet, learner, i)
     if written.size > 0:
         write(learner.sights, learner.controls, i, 1.0, written)
 
@@ -118,7 +130,7 @@ def _potential(fleet: Fleet, learner: Learner, i: int) -> float:
     return potential(fleet.kind, learner.sights.puck[i, 0], learner.controls.tip[i], learner.sights.constants)
 
 
-@compiled
+@inlined
 def _count_violation(learner: Learner, i: int, left: Array) -> None:
     learner.played[i] += 1
     for k in range(learner.constraints[0], learner.constraints[1]):

@@ -1,8 +1,8 @@
 """What can be said about a training's settings before anything is played."""
 
-from airhockey.errors import ConfigurationError
+from airhockey.errors import ConfigurationError, unknown
 from airhockey.learning.pgpe.records import Settings
-from airhockey.learning.pgpe.stage import environments_of
+from airhockey.learning.pgpe.stage import FIXED_STARTS, environments_of
 from airhockey.learning.pgpe.trainable import bounds
 
 
@@ -13,6 +13,12 @@ def check(settings: Settings) -> None:
         raise ConfigurationError(f"the discount must be above 0 and at most 1, not {settings.discount:g}")
     if settings.discount == 1.0 and settings.reward == "thesis" and settings.task in ("hit", "switcher"):
         raise ConfigurationError("a goal is worth 1 / (1 - discount): the thesis's reward needs a discount below 1")
+    if settings.fixed_start not in FIXED_STARTS:
+        raise unknown("fixed start", settings.fixed_start, FIXED_STARTS)
+    if settings.fixed_start != "none" and settings.task == "home":
+        raise ConfigurationError(
+            "on the way home the mallet is put somewhere, and the puck lies still: leave out --fixed-start"
+        )
     if settings.candidates < 2:
         raise ConfigurationError(f"--candidates must be at least 2 to compare, not {settings.candidates}")
     if not settings.learning_rate > 0.0:

@@ -25,7 +25,9 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True):
         learning_rate, sigma_share, sigma_rule, schedule, natural, baseline, normalize, symmetric: See `Pgpe` and `schedule`.
         common_random_numbers: All candidates of an iteration play the same M episodes.
         discount: γ of the return.
-        reward: "thesis" or "success" (1 for a success and 0 for a failure).
+        reward: "thesis", "sparse" (5.1: what the task was worth at its end, less the constraints') or "success" (1 for a
+            success and 0 for a failure).
+        fixed_start: What of the puck's start is the same in all episodes: "none", "position", "velocity" or "both" (5.2).
         max_penalty: Budget of penalty points per episode.
         multiplier_rate: η of the multiplier.
         disturbances: Name of a profile or absolute path of a YAML file.
@@ -52,6 +54,7 @@ class Settings(msgspec.Struct, frozen=True, kw_only=True):
     common_random_numbers: bool = False
     discount: float = 0.997
     reward: str = "thesis"
+    fixed_start: str = "none"
     max_penalty: float | None = None
     multiplier_rate: float = 0.5
     disturbances: str = "ideal"

@@ -55,7 +55,10 @@ class Rollouts:
     def _stage(self, name: str) -> Stage:
         if name not in self._stages:
             settings = self.manifest.options
-            self._stages[name] = Stage(settings.task, name, settings.discount, self.manifest.profile)
+            self._stages[name] = Stage(
+                settings.task, name, settings.discount, self.manifest.profile,
+                sparse=settings.reward == "sparse", fixed=settings.fixed_start, seed=settings.seed,
+            )  # fmt: skip
         return self._stages[name]
 
     def _seat(self, stage: Stage, theta: tuple[float, ...]) -> Seat:
@@ -76,7 +79,7 @@ class Rollouts:
 
     def _play(self, stage: Stage, seat: Seat, seed: np.random.SeedSequence) -> Outcome:
         env, reward, rollout = stage.env, stage.reward, Rollout(stage.env, [seat], seed)
-        shaped = self.manifest.options.reward == "thesis"
+        shaped = self.manifest.options.reward != "success"
         discount, value, weight = self.manifest.options.discount, 0.0, 1.0
         rollout.begin()
         rollout.observation = stage.place(rollout.observation, seed)

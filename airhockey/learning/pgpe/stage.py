@@ -22,6 +22,14 @@ from airhockey.evaluator.play.seat import Care, Seat
 
 Array = NDArray[np.float64]
 
+POSITION, VELOCITY = slice(0, 3), slice(3, 6)
+"""Of the puck, in a base observation."""
+_FIXED: dict[str, tuple[slice, ...]] = {
+    "none": (), "position": (POSITION,), "velocity": (VELOCITY,), "both": (POSITION, VELOCITY)
+}  # fmt: skip
+FIXED_STARTS = tuple(_FIXED)
+_FIXED_START = 3
+"""Key of the seed that the puck's fixed start is drawn with."""
 HOME_STEPS = 150
 """Control steps that there are to reach home."""
 _AT_HOME = 0.03
@@ -55,12 +63,18 @@ class Stage:
         name: The environment's name.
         discount: γ, which the goal's reward depends on.
         profile: Disturbances.
+        sparse: The reward says only at the end whether the task was accomplished (5.1).
+        fixed: What of the puck's start is always the same: see `Settings.fixed_start`.
+        seed: From which that start is drawn.
     """
 
     task: str
     name: str
     discount: float
     profile: Disturbances
+    sparse: bool = False
+    fixed: str = "none"
+    seed: int = 0
 
     def __post_init__(self) -> None:
         self.env = envs.make(self.name, disturbances=self.profile)
@@ -68,10 +82,14 @@ class Stage:
             self.env.horizon = HOME_STEPS
         played = self.task if self.task != "switcher" else self.name.partition("-")[2]
         self.reward: Reward = reward_for(played)
-        if isinstance(self.reward, HitReward):
-            self.reward = HitReward(self.discount)
-        elif self.task == "home":
+        if self.task == "home":
             self.reward = TaskReward(accomplished=at_home)
+        elif self.sparse:
+            self.reward = TaskReward()
+        elif isinstance(self.reward, HitReward):
+            self.reward = HitReward(self.discount)
+        self.env.reset(seed=np.random.SeedSequence(self.seed, spawn_key=(_FIXED_START,)))
+        self._start = self.env.base_observation
 
     def seat(self, parameters: ThesisParameters) -> Seat:
         """The seat of the rule-based player; a switcher is offered every task, and on the way home there is none."""
@@ -82,11 +100,23 @@ class Stage:
         return Seat(LocalAgent(agent), self.env.formats[0], Care())
 
     def place(self, observation: Array, seed: np.random.SeedSequence) -> Array:
-        """Put the mallet where the way home is trained from; gives the observation to begin with, others as it is."""
-        if self.task != "home":
+        """Put the mallet where the way home is trained from, and the puck where it always starts.
+
+        Gives the observation to begin with: the one given where neither is asked for.
+        """
+        if self.task == "home":
+            random = np.random.default_rng(seed.generate_state(4))
+            return self.env.reset(state=_away_from_home(self.env, random))
+        fixed = _FIXED[self.fixed]
+        if not fixed:
             return observation
-        random = np.random.default_rng(seed.generate_state(4))
-        return self.env.reset(state=_away_from_home(self.env, random))
+        state = self.env.base_observation
+        rows, start = (
+            one.reshape(self.env.n_agents, -1) for one in (state, self._start)
+        )  # every robot's holds the puck
+        for part in fixed:
+            rows[:, part] = start[:, part]
+        return self.env.reset(state=state)
 
     def accomplished(self) -> bool:
         """Whether the task is, now that the episode is over."""

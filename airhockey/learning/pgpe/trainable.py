@@ -11,6 +11,7 @@ import yaml
 from numpy.typing import NDArray
 
 from airhockey.agents.parameters import convert
+from airhockey.agents.settings import plain
 from airhockey.agents.thesis.parameters import ThesisParameters
 from airhockey.errors import ConfigurationError, unknown
 from airhockey.inputs.plain_yaml import load_yaml
@@ -84,18 +85,6 @@ def resolve(given: str, names: Sequence[str]) -> str:
             f"there is no parameter {given}: θ has the indices 0 to {len(names) - 1} ({', '.join(names)})"
         )
     raise unknown("parameter (or index of one)", given, names)
-
-
-def plain(parameters: ThesisParameters) -> dict[str, Any]:
-    """Parameters as nested dictionaries and lists of numbers, as they stand in a file."""
-
-    def bare(value: Any) -> Any:
-        if isinstance(value, dict):
-            return {name: bare(item) for name, item in value.items() if item is not None}
-        return list(value) if isinstance(value, tuple) else value
-
-    result: dict[str, Any] = bare(dataclasses.asdict(parameters))
-    return result
 
 
 def read(parameters: ThesisParameters, names: Sequence[str]) -> Array:

@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.agents.settings import plain
 from airhockey.agents.thesis.parameters import ThesisParameters
 from airhockey.errors import AirHockeyError, ConfigurationError
 from airhockey.evaluator.engines.engine import InProcess
@@ -25,7 +26,7 @@ from airhockey.learning.pgpe.records import Iteration, Outcome, RolloutJob, Sett
 from airhockey.learning.pgpe.rollouts import Rollouts
 from airhockey.learning.pgpe.schedule import learning_rate
 from airhockey.learning.pgpe.search import Pgpe, Search, check_progress
-from airhockey.learning.pgpe.trainable import bounds, plain
+from airhockey.learning.pgpe.trainable import bounds
 
 Array = NDArray[np.float64]
 OnEpisode = Callable[[Outcome], None]

@@ -28,7 +28,7 @@ class Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     task: str = "7dof-defend"
     actions: Literal["joints", "tip", "mallet"] = "tip"
-    reward: Literal["shaped", "success"] = "shaped"
+    reward: Literal["shaped", "progress", "success"] = "shaped"
     steps: int = 1_000_000
     seed: int = 0
     disturbances: str = "ideal"

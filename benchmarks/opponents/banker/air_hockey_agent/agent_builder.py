@@ -1,14 +1,11 @@
 """A bank-shot player: always off a rim, the one that leaves the keeper the longer way; catches the puck first; prepares."""
 
-import sys
 from math import hypot, pi
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-sys.path.append(str(Path(__file__).resolve().parents[2]))
-from plain_player import BENT, LEFT, RIM_Y, TOUCH, Array, PlainPlayer, bank
+from airhockey.agents.ordinary.player import BENT, LEFT, RIM_Y, TOUCH, Array, PlainPlayer, bank
 
 TIMES = np.arange(0.3, 1.0, 0.05)
 

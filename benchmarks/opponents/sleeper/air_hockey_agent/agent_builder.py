@@ -1,15 +1,12 @@
 """A sleeper: keeps the puck for 14 s, standing between it and its goal, and shoots just before the fault, hard and off a rim or
 straight."""
 
-import sys
 from math import hypot
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-sys.path.append(str(Path(__file__).resolve().parents[2]))
-from plain_player import BENT, LEFT, Array, PlainPlayer, bank, straight
+from airhockey.agents.ordinary.player import BENT, LEFT, Array, PlainPlayer, bank, straight
 
 WAKE, LATE = 12.2, 13.9
 """When it goes behind the puck, and from when on it shoves the puck away in any case, in [s]."""

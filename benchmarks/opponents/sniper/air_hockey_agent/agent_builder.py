@@ -1,14 +1,11 @@
 """A shooter: 2.3 m/s from every puck that lies free, at the post that is farther from the keeper; it never prepares."""
 
-import sys
 from math import hypot
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-sys.path.append(str(Path(__file__).resolve().parents[2]))
-from plain_player import BENT, LEFT, Array, PlainPlayer, straight
+from airhockey.agents.ordinary.player import BENT, LEFT, Array, PlainPlayer, straight
 
 SPEED = 1.6
 """Of the mallet: a puck at rest leaves with 1.45 times as much, in [m]/[s]."""

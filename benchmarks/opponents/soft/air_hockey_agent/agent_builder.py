@@ -1,14 +1,11 @@
 """A soft player: lets the puck come to rest, goes behind it and returns it at about 0.7 m/s, always; prepares by nudges."""
 
-import sys
 from math import hypot
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-sys.path.append(str(Path(__file__).resolve().parents[2]))
-from plain_player import LEFT, RIGHT, Array, PlainPlayer, straight
+from airhockey.agents.ordinary.player import LEFT, RIGHT, Array, PlainPlayer, straight
 
 TIMES = np.arange(0.3, 1.0, 0.1)
 SPEED = 0.5

@@ -1,15 +1,12 @@
 """The style of 2025's learned players: hits whatever comes, moving or not, as soon as the mallet can get there, at about 2.3 m/s,
 without looking at the keeper; no preparation, no plan, a somewhat noisy aim."""
 
-import sys
 from math import hypot
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-sys.path.append(str(Path(__file__).resolve().parents[2]))
-from plain_player import BENT, LEFT, Array, PlainPlayer, straight
+from airhockey.agents.ordinary.player import BENT, LEFT, Array, PlainPlayer, straight
 
 TIMES = np.arange(0.16, 0.9, 0.04)
 

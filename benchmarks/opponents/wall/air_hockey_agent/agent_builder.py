@@ -1,11 +1,8 @@
 """A wall: stands before its goal where the puck will come, bounces included; pushes away what lies in its half, no more."""
 
-import sys
-from pathlib import Path
 from typing import Any
 
-sys.path.append(str(Path(__file__).resolve().parents[2]))
-from plain_player import Array, PlainPlayer
+from airhockey.agents.ordinary.player import Array, PlainPlayer
 
 LINE = -0.87
 """x of the mallet, in [m]."""

@@ -1,4 +1,4 @@
-"""What the opponents share: eyes, an arm, and the motions of a mallet; of our players' code only the joint controller.
+"""What ordinary opponents share: eyes, an arm, and the motions of a mallet; of our players' code only the joint controller.
 
 Everything is in the table frame: origin at its centre, x towards the other goal, y to the left, in [m].
 """
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.agents import AgentBase
+from airhockey.agents.base import AgentBase
 from airhockey.agents.control.joint_controller import JointController
 from airhockey.agents.control.kinematics import ArmKinematics, spec_of
 from airhockey.agents.control.workspace import Workspace

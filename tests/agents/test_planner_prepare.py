@@ -92,6 +92,21 @@ def test_the_stroke_found_brings_the_puck_to_a_good_place(goal, place):
     assert -0.8 < last[0] <= -0.2 and abs(last[1]) < 0.39105 and last[2] < 0.1
 
 
+def test_a_search_in_pieces_of_bounded_effort_finds_the_same(goal):
+    """What a control step spends is bounded, and the push does not depend on where the pieces end."""
+    puck, rng = np.array([-0.94, -0.48, 0.0, 0.0, 0.0]), np.random.default_rng(2)
+    nothing = Found(np.zeros(LENGTH), -2.0)
+    found, pieces = nothing, 0
+    while found.tried < 60:
+        before = found.tried
+        found = search(puck, found, goal, CONSTANTS, rng, 60 - before, 5)
+        pieces += 1
+        assert found.tried > before
+    at_once = search(puck, nothing, goal, CONSTANTS, np.random.default_rng(2), 60, 10**6)
+    assert pieces > 2
+    np.testing.assert_array_equal(found.push, at_once.push)
+
+
 def test_worth_follows_the_rules_of_the_task(goal):
     def of(ended, x, y, vx=0.0):
         return worth(ended, np.array([x, y, vx, 0.0, 0.0]), goal)

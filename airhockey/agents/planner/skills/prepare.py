@@ -35,8 +35,8 @@ from airhockey.agents.table import CONTACT, to_table
 
 FURTHER = 0.0025
 """How much further a push goes than the last, which has not touched the puck, in [m]."""
-EFFORT = 60
-"""Doubts about pushes that are played out in one control step, at most: they take 0.05 ms each."""
+EFFORT = 25
+"""Doubts about pushes that are played out in one control step, at most: they take 0.05 to 0.15 ms each."""
 TOUCHED = 0.01
 """Way of the puck that shows that a push has touched it, in [m]."""
 

@@ -31,8 +31,8 @@ TASKS = ("hit", "defend", "prepare")
 WARM_UP_STEPS = 60
 """Per skill and puck."""
 EXPECTED = {
-    "open": 0.03, "corner": 0.02, "near rim": 0.16, "far rim": 0.1, "middling near rim": 0.08, "middling far rim": 0.1,
-    "double rim": 0.1, "slow rim": 0.08, "slowest rim": 0.12, "rolling corner": 0.02, "drop": 0.02,
+    "open": 0.02, "corner": 0.01, "near rim": 0.2, "far rim": 0.08, "middling near rim": 0.05, "middling far rim": 0.08,
+    "double rim": 0.06, "slow rim": 0.04, "slowest rim": 0.16, "rolling corner": 0.01, "drop": 0.01,
 }  # fmt: skip
 """Points per try that a game begins with."""
 ANSWERS = {"repel": 0.01, "defend": 0.08}

@@ -18,7 +18,7 @@ from stable_baselines3.common.callbacks import BaseCallback
 
 PAGE = Path(__file__).parent.parent / "docs" / "learning.md"
 LINES = re.compile(r"```\n(import gymnasium\nfrom stable_baselines3.*?)model\.learn\(([\d_]+)\)\n```", re.DOTALL)
-EVERY = 25
+EVERY = 12
 """Rollouts of a printed line."""
 
 

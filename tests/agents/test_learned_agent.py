@@ -10,7 +10,7 @@ from airhockey.agents.learned.agent import FOLDER
 from airhockey.agents.learned.player import NETWORK, LearnedPlayer
 from airhockey.agents.thesis.final import FinalThesisAgent
 
-SEEDS = range(100, 112)
+SEEDS = range(100, 108)
 
 
 def successes(name):
@@ -28,7 +28,7 @@ def successes(name):
 
 def test_it_defends_where_standing_still_does_not():
     learned = successes("learned")
-    assert learned >= 8 and learned > 2 * successes("hold")
+    assert learned >= 6 and learned > 2 * successes("hold")
 
 
 @pytest.mark.parametrize("name", ["7dof-hit", "tournament"])

@@ -12,7 +12,7 @@ from airhockey.agents.planner.estimation.opponent import OpponentTrack, figure_o
 from airhockey.agents.planner.motion.strike import run_up
 from airhockey.agents.planner.shots.aiming import after_strike, mirrored, strike_normal
 from airhockey.agents.planner.shots.flight import FLIGHT_STEP, coast, fly
-from airhockey.agents.planner.shots.kinds import FULL, OPEN, Kind
+from airhockey.agents.planner.shots.kinds import FULL, KINDS, OPEN, Kind
 from airhockey.agents.planner.shots.parameters import smash_parameters
 from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
 from airhockey.agents.planner.shots.shot_search import search
@@ -30,7 +30,7 @@ NO_SHOT = Shot(0.0, 0.0, 0.0, 0.0, 0.0, np.zeros(2), np.zeros(2))
 def model() -> ShotModel:
     workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0)
     assert control_parameters(IIWA).edge_margin == pytest.approx(0.008)
-    return make_shot_model(smash_parameters(IIWA), workspace)._replace(turn=0.0)
+    return make_shot_model(smash_parameters(IIWA), workspace)._replace(turn=0.0, bounce_spread=0.06)
 
 
 def shot_at(
@@ -101,7 +101,7 @@ def test_a_bounced_shot_flies_to_where_it_is_aimed(model: ShotModel, wall: float
 @pytest.mark.parametrize("wall", [-2.0, 2.0])
 def test_a_shot_off_two_rims_flies_to_where_it_is_aimed(wall: float) -> None:
     workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0)
-    model = make_shot_model(smash_parameters(IIWA, in_game=True), workspace)._replace(turn=0.0)
+    model = make_shot_model(smash_parameters(IIWA, in_game=True), workspace)._replace(turn=0.0, bounce_spread=0.06)
     puck = np.array([-0.5, 0.0, 0.0, 0.0, 0.0])
     shot = shot_at(model, list(puck), aim=0.05, wall=wall)
     assert shot.value > 0.1
@@ -213,3 +213,27 @@ def test_the_puck_coasts_as_it_does_in_small_pieces(model: ShotModel, velocity: 
         expected = path[k].copy()
         advance(expected, 0.02, model.motion)
         assert path[k + 1] == pytest.approx(expected, abs=1e-12)
+
+
+def test_the_time_since_the_last_bounce_is_that_of_the_way_from_the_rim(model: ShotModel) -> None:
+    puck = np.array([0.0, 0.0, 1.5, 1.5, 0.0])
+    path = coast(puck, 0.001, 2000, model.motion)
+    turned_round = int(np.argmax(path[:, 3] < 0.0))
+    there = int(np.argmax(path[:, 0] > HALF_LENGTH))
+    assert fly(puck, NOBODY, 0.0, model)[4] == pytest.approx(0.001 * (there - turned_round), abs=0.006)
+    assert fly(np.array([0.0, 0.0, 1.5, 0.0, 0.0]), NOBODY, 0.0, model)[4] == pytest.approx(0.785, abs=0.005)
+
+
+def test_a_shot_across_the_table_is_worth_more_than_one_along_the_rim_that_it_comes_off() -> None:
+    """The keeper has least time after the bounce where the puck comes from the other side."""
+    workspace = Workspace(to_robot(np.array([-0.918, -0.463])), to_robot(np.array([0.918, 0.463])), 6.0)
+    in_game = make_shot_model(smash_parameters(IIWA, True), workspace)
+    near = next(kind for kind in KINDS if kind.name == "near rim")
+
+    def worth(y: float) -> float:
+        attempt = Attempt(2.4, 0.085, 1.0, 0.0)
+        return judge(
+            np.array([-0.5, y, 0.0, 0.0, 0.0]), attempt, TIP, Keeper(NOBODY, 0.0, near.heeds), near.pace, in_game
+        ).value
+
+    assert worth(-0.25) > 1.5 * worth(0.0) > 1.5 * worth(0.2) > 0.0

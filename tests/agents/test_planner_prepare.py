@@ -85,11 +85,26 @@ def test_what_is_possible_stays_on_the_table_and_within_the_means(goal):
 @pytest.mark.parametrize("place", [(-0.5, 0.42), (-0.3, -0.44), (-0.88, 0.2), (-0.9, -0.4), (-0.92, 0.47)])
 def test_the_stroke_found_brings_the_puck_to_a_good_place(goal, place):
     puck = np.array([*place, 0.0, 0.0, 0.0])
-    push, value = search(puck, Found(np.zeros(LENGTH), -2.0), goal, CONSTANTS, np.random.default_rng(2), 600)
+    push, value, _ = search(puck, Found(np.zeros(LENGTH), -2.0), goal, CONSTANTS, np.random.default_rng(2), 600, 10**6)
     after, out_of_turn = puck_after(puck, push, CONSTANTS, goal.friction, 1.0, goal.middle)
     ended, last = coast(after, CONSTANTS, goal.middle, goal.horizon)
     assert not out_of_turn and value > 1.3 and ended in (0, 1)
     assert -0.8 < last[0] <= -0.2 and abs(last[1]) < 0.39105 and last[2] < 0.1
+
+
+def test_a_search_in_pieces_of_bounded_effort_finds_the_same(goal):
+    """What a control step spends is bounded, and the push does not depend on where the pieces end."""
+    puck, rng = np.array([-0.94, -0.48, 0.0, 0.0, 0.0]), np.random.default_rng(2)
+    nothing = Found(np.zeros(LENGTH), -2.0)
+    found, pieces = nothing, 0
+    while found.tried < 60:
+        before = found.tried
+        found = search(puck, found, goal, CONSTANTS, rng, 60 - before, 5)
+        pieces += 1
+        assert found.tried > before
+    at_once = search(puck, nothing, goal, CONSTANTS, np.random.default_rng(2), 60, 10**6)
+    assert pieces > 2
+    np.testing.assert_array_equal(found.push, at_once.push)
 
 
 def test_worth_follows_the_rules_of_the_task(goal):

@@ -13,6 +13,7 @@ from airhockey.errors import ConfigurationError
 from airhockey.evaluator import evaluation
 from airhockey.evaluator.match import MatchOptions, begin_match, play_match, resume_match
 from airhockey.evaluator.runs.game_records import GameOptions
+from airhockey.evaluator.runs.reader import open_source
 from airhockey.evaluator.runs.records import Options
 from airhockey.inputs.hashing import content_hash
 
@@ -60,6 +61,7 @@ def test_an_edited_manifest_is_refused(copy: Path, change: Callable[[Any], None]
     edit(copy / "match.json", change)
     with pytest.raises(ConfigurationError, match=r"match.json' was edited since it was written"):
         resume_match(copy, {})
+    assert any("match.json was edited" in note for note in open_source(copy).notes)
 
 
 def test_a_manifest_may_be_written_otherwise_and_moved(copy: Path) -> None:

@@ -14,6 +14,7 @@ from airhockey.agents.estimation.side_clock import HURRY, SideClock
 from airhockey.agents.estimation.watch import TableWatch
 from airhockey.agents.planner.estimation.choice import Arms
 from airhockey.agents.planner.estimation.outcome import Outcome
+from airhockey.agents.planner.estimation.table_learning import TableLearning
 from airhockey.agents.planner.shots.kinds import ANY, KINDS, OPEN
 from airhockey.agents.planner.skills.dead_puck import DeadPuck
 from airhockey.agents.planner.skills.defend import Defend
@@ -25,14 +26,16 @@ from airhockey.agents.planner.tactics import Playing, choose
 from airhockey.agents.skill import Situation, Skill
 from airhockey.agents.table import to_table
 
+TASKS = ("hit", "defend", "prepare")
+"""Tasks of one episode each: too short to learn from."""
 WARM_UP_STEPS = 60
 """Per skill and puck."""
 EXPECTED = {
-    "open": 0.05, "corner": 0.03, "near rim": 0.14, "far rim": 0.1, "double rim": 0.12, "middling double rim": 0.05,
-    "slow rim": 0.08, "slowest rim": 0.12, "rolling corner": 0.04, "drop": 0.03,
+    "open": 0.02, "corner": 0.01, "near rim": 0.2, "far rim": 0.08, "middling near rim": 0.05, "middling far rim": 0.08,
+    "double rim": 0.06, "slow rim": 0.04, "slowest rim": 0.16, "rolling corner": 0.01, "drop": 0.01,
 }  # fmt: skip
 """Points per try that a game begins with."""
-ANSWERS = {"repel": 0.05, "defend": 0.05}
+ANSWERS = {"repel": 0.01, "defend": 0.08}
 """The same for the answers to a puck that comes."""
 TRIES = 6.0
 """How many tries these expectations are worth."""
@@ -67,6 +70,7 @@ class PlannerAgent(AgentBase):
         self._kinds = {kind.name: kind for kind in KINDS}
         self._strokes, self._answers = Arms(EXPECTED, TRIES), Arms(ANSWERS, TRIES)
         self._outcome, self._answered = Outcome(), Outcome()
+        self._table = TableLearning()
         self._skills: dict[str, Skill] = {
             "smash": self._smash,
             "drop": self._drop,
@@ -91,6 +95,8 @@ class PlannerAgent(AgentBase):
         self._skill: Skill | None = None
         self._step = 0
         self._clock.reset()
+        self._table.reset()
+        self._smash.play_on(self._table)
 
     def draw_action(self, observation: Array) -> Array:
         """See `AgentBase.draw_action`."""
@@ -107,7 +113,10 @@ class PlannerAgent(AgentBase):
         return action
 
     def _learn(self, situation: Situation, skill: Skill, before: str) -> None:
-        """Note what was played, and what has become of it."""
+        """Note what the table is like, what was played, and what has become of it."""
+        if self._task not in TASKS:
+            self._table.see(situation)
+            self._smash.play_on(self._table)
         x = float(situation.puck.position[0])
         for arm, points in self._outcome.see(x, situation.dt):
             self._strokes.tell(arm, points)

@@ -63,9 +63,14 @@ def sealed(manifest: Kind) -> Kind:
     return msgspec.structs.replace(manifest, seal=hashlib.sha256(msgspec.json.encode(bare)).hexdigest())
 
 
+def was_edited(manifest: Manifest[Any]) -> bool:
+    """Whether a manifest is another than what was written."""
+    return bool(manifest.seal) and sealed(manifest).seal != manifest.seal
+
+
 def check_seal(path: Path, name: str, manifest: Manifest[Any]) -> None:
     """What goes on must be what was begun; raises `ConfigurationError` for a manifest that was edited."""
-    if manifest.seal and sealed(manifest).seal != manifest.seal:
+    if was_edited(manifest):
         raise ConfigurationError(
             f"{str(path / name)!r} was edited since it was written: one result would come from two runs; put its content back, "
             "or begin a new run with another --out"

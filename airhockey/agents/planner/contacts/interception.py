@@ -42,6 +42,7 @@ class CatchCost(NamedTuple):
         near_x, far_x: Where the puck shall be, in [m].
         best_x: Where it is best, in [m].
         place: Cost of the distance to `best_x`, per [m]².
+        best_y, aside: |y| where it is best, in [m], and the cost of the distance to it, per [m]².
         deep_x, deep: A place behind this, in [m], costs that much more, per [m].
         speed: Cost of the puck's speed, per [m]/[s].
         effort: Cost of the squared effort beyond `easy`.
@@ -64,6 +65,8 @@ class CatchCost(NamedTuple):
     far_x: float
     best_x: float
     place: float
+    best_y: float
+    aside: float
     deep_x: float
     deep: float
     speed: float
@@ -220,6 +223,7 @@ def best_meeting(
         need = effort(way, reach)
         speed = np.hypot(state[2], state[3])
         cost = wish.place * (state[0] - wish.best_x) ** 2 + wish.speed * speed
+        cost += wish.aside * (abs(state[1]) - wish.best_y) ** 2
         cost += wish.deep * max(0.0, wish.deep_x - state[0])
         cost += wish.effort * max(0.0, need - wish.easy) ** 2
         cost += wish.bounce * path.bounces[i]

@@ -109,6 +109,12 @@ def worth(ended: int, puck: Array, goal: Goal) -> float:
 @compiled
 def value(puck: Array, push: Array, goal: Goal, constants: Array, least: float) -> float:
     """Half the least and half the mean of a push's worth over the doubts; gives up early below `least`."""
+    return _valued(puck, push, goal, constants, least)[0]
+
+
+@compiled
+def _valued(puck: Array, push: Array, goal: Goal, constants: Array, least: float) -> tuple[float, int]:
+    """The value, and how many doubts it took to tell."""
     total, lowest = 0.0, 2.0
     bounces = constants.copy()
     for k in range(len(DOUBTS)):
@@ -120,15 +126,15 @@ def value(puck: Array, push: Array, goal: Goal, constants: Array, least: float) 
         put_on_table(state, 0.0002)
         after, awry = puck_after(state, played, constants, goal.friction, 1.0 + goal.rim * DOUBTS[k, 3], goal.middle)
         if awry:
-            return -1.0
+            return -1.0, k + 1
         ended, rest = coast(after, bounces, goal.middle, goal.horizon)
         w = worth(ended, rest, goal)
         if np.hypot(rest[0] - puck[0], rest[1] - puck[1]) < 0.02:
             w = -0.5
         total, lowest = total + w, min(lowest, w)
         if 0.5 * lowest + 1.0 < least:
-            return -1.0
-    return 0.5 * lowest + 0.5 * total / len(DOUBTS)
+            return -1.0, k + 1
+    return 0.5 * lowest + 0.5 * total / len(DOUBTS), len(DOUBTS)
 
 
 @compiled
@@ -189,22 +195,28 @@ def finish(push: Array, goal: Goal) -> None:
 
 
 class Found(NamedTuple):
-    """A push and its value; below −1: there is none yet."""
+    """A push and its value (below −1: there is none yet), and how many candidates were tried for it."""
 
     push: Array
     value: float
+    tried: int = 0
 
 
 @compiled
-def search(puck: Array, found: Found, goal: Goal, constants: Array, rng: np.random.Generator, tries: int) -> Found:
-    """Improve on a push; gives the best one."""
-    best, best_value = found
-    for _ in range(tries):
+def search(
+    puck: Array, found: Found, goal: Goal, constants: Array, rng: np.random.Generator, tries: int, effort: int
+) -> Found:
+    """Improve on a push, by so many tries or until so many doubts have been played out; gives the best one."""
+    best, best_value, tried = found
+    spent, until = 0, tried + tries
+    while tried < until and spent < effort:
+        tried += 1
         local = best_value > -0.4 and rng.uniform(0.0, 1.0) < 0.5
         push = vary(best, puck, goal, rng) if local else draw(puck, goal, rng)
         if not possible(push, goal.lower, goal.upper, goal.speed, goal.acceleration):
             continue
-        worth_of_it = value(puck, push, goal, constants, best_value)
+        worth_of_it, doubts = _valued(puck, push, goal, constants, best_value)
+        spent += doubts
         if worth_of_it > best_value:
             best, best_value = push, worth_of_it
-    return Found(best, best_value)
+    return Found(best, best_value, tried)

@@ -75,7 +75,7 @@ def state_at(path: Array, step: float, time: float) -> Array:
 
 
 @compiled
-def fly(puck: Array, opponent: Array, first: float, model: ShotModel) -> tuple[float, float, float, float]:
+def fly(puck: Array, opponent: Array, first: float, model: ShotModel) -> tuple[float, float, float, float, float]:
     """Let a puck fly to the opponent's goal line.
 
     Args:
@@ -86,13 +86,17 @@ def fly(puck: Array, opponent: Array, first: float, model: ShotModel) -> tuple[f
 
     Returns:
         y on the goal line [m] (far off if it is never reached), the least gap to the opponent's mallet [m], the flight's
-        length [m], and the speed with which it passed the opponent [m]/[s].
+        length [m], the speed with which it passed the opponent [m]/[s], and the time from the last bounce, or else from the
+        beginning, to the goal line [s].
     """
-    state, gap, length, passing = puck.copy(), _MISSED, 0.0, 0.0
+    state, gap, length, passing, since = puck.copy(), _MISSED, 0.0, 0.0, 0.0
     pace = pace_of(FLIGHT_STEP, model.motion)
     for k in range(_FLIGHT_STEPS):
-        before_x, before_y = state[0], state[1]
+        before_x, before_y, before_vy = state[0], state[1], state[3]
         move_by(state, pace, model.motion)
+        since += FLIGHT_STEP
+        if before_vy * state[3] < 0.0:
+            since = max(FLIGHT_STEP - (model.wall - abs(before_y)) / abs(before_vy), 0.0)
         length += sqrt((state[0] - before_x) ** 2 + (state[1] - before_y) ** 2)
         if state[2] < _STUCK:
             break
@@ -103,8 +107,9 @@ def fly(puck: Array, opponent: Array, first: float, model: ShotModel) -> tuple[f
                 gap, passing = distance, sqrt(state[2] ** 2 + state[3] ** 2)
         if state[0] > model.goal_line:
             share = (model.goal_line - before_x) / (state[0] - before_x)
-            return before_y + share * (state[1] - before_y), gap, length, passing
-    return _MISSED, gap, length, passing
+            late = (1.0 - share) * FLIGHT_STEP
+            return before_y + share * (state[1] - before_y), gap, length, passing, since - late
+    return _MISSED, gap, length, passing, since
 
 
 @compiled

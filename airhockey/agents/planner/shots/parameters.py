@@ -14,6 +14,7 @@ class SmashParameters:
 
     Attributes:
         gain: g = 1 + e of the contact between mallet and puck.
+        gain_slow: Added to it for slow strokes, divided by the mallet's speed, in [m]/[s].
         drift_kept: Share of the puck's lateral velocity that counts: the contact is soft, and while it lasts the mallet grips.
         spin_share: Share of the puck's surface velocity rω that becomes lateral velocity in a contact.
         turn: By which share of its sine a strike is commanded further from the x axis: the arm's systematic error.
@@ -22,6 +23,7 @@ class SmashParameters:
         diagonal: By what share a stroke across is faster than one along x: times the square of its direction's sine.
         fastest: No stroke is faster, in [m]/[s].
         brisk: Speed of the puck up to which a shot at full pace is worth more, the faster it is, in [m]/[s]; 0: it is not.
+        sudden: Time after the last bounce down to which such a shot at the post on that side is worth more, in [s].
         least_speed: Below this no stroke is worth it, in [m]/[s].
         acceleration, braking: Of the mallet in a stroke, in [m]/[s²].
         steady: Time at full speed before the contact, in [s].
@@ -82,6 +84,8 @@ class SmashParameters:
     diagonal: float = 0.0
     fastest: float = 10.0
     brisk: float = 0.0
+    sudden: float = 0.35
+    gain_slow: float = 0.0
     posture: tuple[float, ...] = ()
     posture_gain: float = 0.0
 

@@ -40,6 +40,7 @@ class ShotModel(NamedTuple):
     lower: Array
     upper: Array
     gain: float
+    gain_slow: float
     drift_kept: float
     spin_share: float
     turn: float
@@ -48,6 +49,7 @@ class ShotModel(NamedTuple):
     diagonal: float
     fastest: float
     brisk: float
+    sudden: float
     least_speed: float
     acceleration: float
     braking: float

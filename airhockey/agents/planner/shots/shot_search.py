@@ -12,7 +12,7 @@ from airhockey.agents.planner.estimation.opponent import OpponentTrack
 from airhockey.agents.planner.shots.flight import FLIGHT_STEP, coast, state_at
 from airhockey.agents.planner.shots.kinds import ANY, OPEN, Kind
 from airhockey.agents.planner.shots.parameters import SmashParameters
-from airhockey.agents.planner.shots.shot_model import ShotModel, make_shot_model
+from airhockey.agents.planner.shots.shot_model import ALONG, ShotModel, make_shot_model
 from airhockey.agents.planner.shots.shots import Attempt, Keeper, Shot, judge
 from airhockey.agents.skill import Array, Situation
 from airhockey.envs.compiled import pack
@@ -25,6 +25,8 @@ BEYOND = 0.5
 """How much later another shot is then looked for, in [s]."""
 LENIENCE = 0.1
 """By how much the shot pursued may be late, in [s]: the estimate of the way is cautious, and what is under way should go on."""
+DECAY, RESTITUTION = 3, 5
+"""Places in the constants of `PuckMotion`."""
 _NONE = Shot(0.0, 0.0, 0.0, 0.0, 0.0, np.zeros(2), np.zeros(2))
 
 
@@ -53,6 +55,12 @@ class ShotPlanner:
         self._kind = OPEN
         self._best = _NONE
         self._tried = 0
+
+    def play_on(self, damping: float, restitution: float) -> None:
+        """What the table is like: its damping, in [1/s], and the restitution of its side rims."""
+        self._motion[DECAY], self._motion[RESTITUTION] = damping, restitution
+        self._model["motion"] = self._motion
+        self._model["slope"] = restitution / ALONG
 
     def plan(self, situation: Situation, opponent: OpponentTrack, time_left: float, kind: Kind = OPEN) -> Shot | None:
         """The best shot known now, or None where none is worth trying.

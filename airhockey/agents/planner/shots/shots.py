@@ -25,6 +25,12 @@ AROUND = 0.3
 CORRECTIONS = 2
 """Of the aim of a bounced shot, after its flight: the mirror knows nothing of damping and spin."""
 _DECAY = 3  # place in the constants of `PuckMotion`
+FARTHEST_PACED = -0.25
+"""x up to which a pace can be kept: further on the arm is so slow that a puck's speed is hard to foretell, in [m]."""
+DAMPING = 0.5
+"""For which the paces are given, in [1/s]."""
+LONGER = 1.3
+"""A way off a rim against the straight one."""
 THERE = 0.02
 """Distance from which the mallet counts as being where a strike begins, in [m]."""
 GRAIN = 0.005
@@ -103,17 +109,21 @@ def judge(seen: Array, attempt: Attempt, tip: Array, keeper: Keeper, pace: float
     """
     wait, aim, wall, margin = attempt
     nothing = Shot(0.0, wait, aim, wall, 0.0, np.zeros(2), np.zeros(2))
-    if seen[0] > model.upper[0]:
+    if seen[0] > (FARTHEST_PACED if pace < FULL else model.upper[0]):
         return nothing
     puck = seen.copy()
     puck[3] = model.drift_kept * seen[3] + model.spin_share * model.puck_radius * seen[4]
     rims = round(abs(wall))
     target = aim if rims == 0 else mirrored(aim, copysign(model.wall, wall), rims, model.slope)
     speed = float(np.interp(puck[0] - model.contact, model.speed_places, model.speeds))
-    leaving = pace + model.motion[_DECAY] * (model.goal_line - puck[0] - WAY)
+    leaving = (
+        pace
+        + model.motion[_DECAY] * (model.goal_line - puck[0] - WAY)
+        + LONGER * (model.motion[_DECAY] - DAMPING) * WAY
+    )
     way_x, way_y = model.goal_line - puck[0], target - puck[1]
     speed *= 1.0 + model.diagonal * way_y * way_y / (way_x * way_x + way_y * way_y)
-    speed = min(speed, model.fastest, (leaving + (model.gain - 1.0) * puck[2]) / model.gain)
+    speed = min(speed, model.fastest, (leaving - model.gain_slow + (model.gain - 1.0) * puck[2]) / model.gain)
     normal = _towards(puck, target, speed, model)
     room = room_speed(puck[:2] - model.contact * normal, normal, model)
     if room < speed:  # a slower mallet must strike more from the side that the puck moves to
@@ -127,7 +137,9 @@ def judge(seen: Array, attempt: Attempt, tip: Array, keeper: Keeper, pace: float
         or not possible(Line(mallet, normal, speed), spare, tip, puck, model)
     ):
         return nothing  # before the flight, which costs most
-    goal, gap, length, passing = fly(_struck(puck, normal, speed, model), keeper.places, wait / FLIGHT_STEP, model)
+    goal, gap, length, passing, since = fly(
+        _struck(puck, normal, speed, model), keeper.places, wait / FLIGHT_STEP, model
+    )
     turns = 1.0 if rims % 2 == 0 else -1.0  # in an odd number of mirrors, left and right are swapped
     for _ in range(CORRECTIONS if rims > 0 else 0):
         if not arrives(goal):
@@ -137,7 +149,9 @@ def judge(seen: Array, attempt: Attempt, tip: Array, keeper: Keeper, pace: float
         mallet = puck[:2] - model.contact * normal
         if normal[0] < FORWARD or not possible(Line(mallet, normal, speed), spare, tip, puck, model):
             return nothing
-        goal, gap, length, passing = fly(_struck(puck, normal, speed, model), keeper.places, wait / FLIGHT_STEP, model)
+        goal, gap, length, passing, since = fly(
+            _struck(puck, normal, speed, model), keeper.places, wait / FLIGHT_STEP, model
+        )
     value = 0.0
     if arrives(goal):
         spread = length * (model.direction_spread + rims * model.bounce_spread) + GRAIN
@@ -149,7 +163,11 @@ def judge(seen: Array, attempt: Attempt, tip: Array, keeper: Keeper, pace: float
             value *= probability_positive(gap, apart)
         value *= exp(-model.patience * wait)
         if pace >= FULL and model.brisk > 0.0:
-            value *= _briskness(_struck(puck, normal, speed, model), model.brisk)
+            near = aim * (wall if rims % 2 == 1 else -wall) > 0.0  # the post on the side where it bounces last
+            if near and not keeper.heeds:
+                value *= _suddenness(since, model.sudden)
+            else:
+                value *= _briskness(_struck(puck, normal, speed, model), model.brisk)
     commanded = turned(normal, model.turn)
     return Shot(value, wait, aim, wall, speed, commanded, puck[:2] - model.contact * commanded)
 
@@ -162,10 +180,23 @@ def _briskness(struck: Array, brisk: float) -> float:
 
 
 @compiled
+def _suddenness(since: float, sudden: float) -> float:
+    """What little time [s] after the last bounce is worth, as a share: its inverse to the fourth, down to one that is enough."""
+    share = min(sudden / max(since, 1e-6), 1.0)
+    return share * share * share * share
+
+
+@compiled
 def turned(normal: Array, share: float) -> Array:
     """A direction further from the x axis by a share of its sine. Shape (2,)."""
     y = min(max(normal[1] * (1.0 + share), -0.99), 0.99)
     return np.array([sqrt(1.0 - y * y), y])
+
+
+@compiled
+def gain_at(speed: float, model: ShotModel) -> float:
+    """g of a contact at a speed of the mallet, in [m]/[s]: a slow one gives more, because the arm lags less."""
+    return model.gain + model.gain_slow / max(speed, 0.1)
 
 
 @compiled
@@ -222,11 +253,11 @@ def _towards(puck: Array, target: float, speed: float, model: ShotModel) -> Arra
     """The normal of the strike that sends the puck to y = target on the goal line. Shape (2,)."""
     x, y = model.goal_line - puck[0], target - puck[1]
     length = sqrt(x * x + y * y)
-    return np.asarray(strike_normal(puck[2:4], np.array([x / length, y / length]), speed, model.gain))
+    return np.asarray(strike_normal(puck[2:4], np.array([x / length, y / length]), speed, gain_at(speed, model)))
 
 
 @compiled
 def _struck(puck: Array, normal: Array, speed: float, model: ShotModel) -> Array:
     flight = puck.copy()
-    flight[2:4] = after_strike(puck[2:4], normal, speed, model.gain)
+    flight[2:4] = after_strike(puck[2:4], normal, speed, gain_at(speed, model))
     return flight

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from airhockey.agents.base import task_of
 from airhockey.agents.control.cartesian import cubic
 from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.workspace import Workspace
@@ -103,7 +104,8 @@ class Defend:
         self._reach = Reach(
             np.array(means.speed), np.array(means.acceleration), to_table(workspace.lower), to_table(workspace.upper)
         )
-        self._wish = p.wish._replace(grip=spec_of(env_info).n_joints == 7)
+        in_game = task_of(env_info) == "tournament"
+        self._wish = p.wish._replace(grip=spec_of(env_info).n_joints == 7, aside=p.wish.aside if in_game else 0.0)
         self._constants = puck_motion().constants
         self._steps = round(p.horizon / STEP)
         self._meeting: Meeting | None = None

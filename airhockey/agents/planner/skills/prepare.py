@@ -35,6 +35,8 @@ from airhockey.agents.table import CONTACT, to_table
 
 FURTHER = 0.0025
 """How much further a push goes than the last, which has not touched the puck, in [m]."""
+EFFORT = 25
+"""Doubts about pushes that are played out in one control step, at most: they take 0.05 to 0.15 ms each."""
 TOUCHED = 0.01
 """Way of the puck that shows that a push has touched it, in [m]."""
 
@@ -126,6 +128,7 @@ class Prepare:
         self._think(12)
         self._think_again()
         self._lies_well(self._puck, 1.0)
+        put_on_table(self._puck, 0.0002)
         mallet_at(self._push, 0, np.float64(0.0))
         self._restart()
 
@@ -137,7 +140,7 @@ class Prepare:
 
     def _forget(self) -> None:
         self._push, self._value, self._tried = np.zeros(LENGTH), -2.0, 0
-        self._time, self._steps = 0.0, 0
+        self._time, self._steps, self._again = 0.0, 0, 0
 
     @property
     def finished(self) -> bool:
@@ -194,9 +197,9 @@ class Prepare:
         return np.asarray(self._puck[:2] - before)
 
     def _think(self, tries: int) -> None:
-        found = Found(self._push, self._value)
-        self._push, self._value = search(self._puck, found, self._now, self._constants, self._rng, tries)
-        self._tried += tries
+        found = Found(self._push, self._value, self._tried)
+        found = search(self._puck, found, self._now, self._constants, self._rng, tries, EFFORT)
+        self._push, self._value, self._tried = found
 
     def _decided(self) -> bool:
         p = self._parameters
@@ -237,10 +240,15 @@ class Prepare:
         return np.asarray(FURTHER * self._missed / max(float(np.hypot(*velocity)), 1e-9) * velocity)
 
     def _think_again(self) -> None:
-        """The puck lies elsewhere: begin with the push that was taken along."""
+        """The puck lies elsewhere: begin with the push that was taken along.
+
+        The first time as long as it takes; while a creeping puck is thought about, it creeps on, and so the next times are short.
+        """
+        p = self._parameters
         finish(self._push, self._now)
         self._value = value(self._puck, self._push, self._now, self._constants, -2.0)
-        self._tried = max(0, self._parameters.least_tries - 3 * self._parameters.tries_per_step)
+        self._tried = max(0, (p.least_tries if self._again == 0 else p.most_tries) - 3 * p.tries_per_step)
+        self._again += 1
         self.phase = "think"
 
     def _strike(self, situation: Situation) -> Array:

@@ -9,6 +9,7 @@ from airhockey.agents.base import task_of
 from airhockey.agents.control.kinematics import spec_of
 from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.planner.estimation.opponent import OpponentTrack
+from airhockey.agents.planner.estimation.table_learning import TableLearning
 from airhockey.agents.planner.shots.kinds import OPEN, Kind
 from airhockey.agents.planner.shots.parameters import smash_parameters
 from airhockey.agents.planner.shots.shot_search import ShotPlanner
@@ -42,6 +43,10 @@ class Smash(Striker):
     def aim_for(self, kind: Kind) -> None:
         """What kind of shot to look for from now on."""
         self.kind = kind
+
+    def play_on(self, table: TableLearning) -> None:
+        """What the table is like, from now on."""
+        self._planner.play_on(table.damping, table.restitution)
 
     @property
     def pursuing(self) -> bool:

@@ -57,7 +57,7 @@ def test_the_official_files(hockey: Hockey) -> None:
         )
 
 
-@pytest.mark.parametrize("size", [1500, 9000])
+@pytest.mark.parametrize("size", [1900, 9000])
 def test_a_match(hockey: Hockey, size: int) -> None:
     line = "match hold hold --steps 400 --jobs 1 --quiet"
     stopped(hockey, f"{line} --out match", size)

@@ -169,7 +169,7 @@ def test_a_thousand_episodes_fit(results: Results, tmp_path: Path) -> None:
     run = tmp_path / "run"
     run.mkdir()
     manifest = (results.swings / "run.json").read_text().replace(f'"episodes": {EPISODES}', '"episodes": 1000')
-    (run / "run.json").write_text(manifest)
+    (run / "run.json").write_text(re.sub(r'"seal": "\w+"', '"seal": ""', manifest))
     played = list(read_episodes(results.swings / "trajectories.h5", ENV))
     random = np.random.default_rng(0)
     many = []

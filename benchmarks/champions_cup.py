@@ -127,9 +127,8 @@ def main() -> None:
     """Play, and print the table as it grows."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--players", nargs="+", default=["planner"])
-    parser.add_argument(
-        "--against", nargs="*", default=sorted(path.parent.name for path in OPPONENTS.glob("*/air_hockey_agent"))
-    )
+    opponents = sorted(path.parent.name for path in OPPONENTS.glob("*/air_hockey_agent"))
+    parser.add_argument("--against", nargs="*", default=[*opponents, "thesis"])
     parser.add_argument("--games", type=int, default=3)
     parser.add_argument("--steps", type=int, default=WHOLE)
     parser.add_argument("--disturbances", nargs="+", default=["ideal", "server"])

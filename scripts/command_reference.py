@@ -37,15 +37,23 @@ def reference() -> Iterator[str]:
     yield "# Command line\n"
     yield "Written from the commands' own help; `hockey COMMAND --help` says the same.\n"
     yield from help_text(hockey)
-    names = hockey.list_commands(context)
-    yield from (f"- [`hockey {name}`](#hockey-{name})" for name in names)
-    for name in names:
-        command = hockey.get_command(context, name)
-        yield f"\n## hockey {name}\n"
-        yield from help_text(command)
+    commands = list(commands_of(hockey, context))
+    yield from (f"- [`{child.command_path}`](#{child.command_path.replace(' ', '-')})" for child in commands)
+    for child in commands:
+        yield f"\n## {child.command_path}\n"
+        yield from help_text(child.command)
+        yield fenced(f"{child.command_path} {' '.join(child.command.collect_usage_pieces(child))}", "text")
+        yield from options_table(child.command, child)
+
+
+def commands_of(group: click.Group, context: click.Context) -> Iterator[click.Context]:
+    """Every command, those of groups after their group."""
+    for name in group.list_commands(context):
+        command = group.get_command(context, name)
         child = click.Context(command, info_name=name, parent=context)
-        yield fenced(f"{child.command_path} {' '.join(command.collect_usage_pieces(child))}", "text")
-        yield from options_table(command, child)
+        yield child
+        if isinstance(command, click.Group):
+            yield from commands_of(command, child)
 
 
 def help_text(command: click.Command) -> Iterator[str]:

@@ -49,7 +49,7 @@ _WHOLE = click.IntRange(min=1)
 def ppo(ctx: click.RichContext, /, **given: Any) -> None:
     """Train a network for a task by PPO, many environments at once, on the tangent space of the constraints (ATACOM).
 
-    Whatever an action is, the command stays within the constraints, from the first random action on. The run's folder is
+    Commands are built to stay within the constraints, from the first random action on. The run's folder is
     itself an agent, from the first checkpoint on and without torch: name it wherever an agent is asked for. Results depend
     on the options; a run that was interrupted, or killed, goes on with --resume as if nothing had happened.
 

@@ -39,10 +39,10 @@ players: .venv/dev.installed
 	$(BIN)/python scripts/compile_players.py
 
 pytest: .venv/dev.installed players
-	$(BIN)/pytest --numprocesses $(WORKERS)
+	$(BIN)/pytest --numprocesses $(WORKERS) --dist loadgroup
 
 long: .venv/dev.installed players
-	LONG=1 $(BIN)/pytest --numprocesses $(WORKERS)
+	LONG=1 $(BIN)/pytest --numprocesses $(WORKERS) --dist loadgroup
 
 figures: .venv/dev.installed
 	$(BIN)/python scripts/figures.py measure

@@ -18,8 +18,21 @@ from submissions import make_submission
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+EXPENSIVE = {
+    "results": "reporting", "here": "participants", "served": "viewer", "finished": None, "straight": None, "site": None
+}  # fmt: skip
+"""Fixtures that take many seconds -> the group of tests that shares them; None: of its module."""
+
+
+@pytest.hookimpl(tryfirst=True)  # before xdist reads the groups
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """What takes many seconds waits for `make long`, which runs everything; `make test` keeps a shorter one of its kind."""
+    """Tests that share an expensive fixture run in one process, so that it is made once (`--dist loadgroup`).
+
+    What takes many seconds waits for `make long`, which runs everything; `make test` keeps a shorter one of its kind.
+    """
+    for item in items:
+        for name in EXPENSIVE.keys() & set(getattr(item, "fixturenames", ())):
+            item.add_marker(pytest.mark.xdist_group(EXPENSIVE[name] or item.path.stem))
     if "LONG" in os.environ:
         return
     skip = pytest.mark.skip(reason="takes many seconds: make long")

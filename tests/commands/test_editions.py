@@ -91,6 +91,7 @@ def test_a_run_goes_on_under_its_own_edition(hockey: Hockey) -> None:
     assert status == 2 and "has edition '2025', not '2023'" in err
 
 
+@pytest.mark.long
 def test_workers_and_dask_play_it_as_this_process_does(hockey: Hockey, tmp_path: Path) -> None:
     options = Options(environments=("7dof-defend",), edition="2025", agent="thesis", episodes=6, seed=5)
     assert options.environments == ("defend",)

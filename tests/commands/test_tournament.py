@@ -102,7 +102,7 @@ def test_forfeits_are_status_3(hockey: Hockey, submission: Callable[..., str]) -
     assert "stored in runs/tournament-s0" in err
 
 
-@pytest.mark.parametrize("where", ["--jobs 2", "--cluster local:2"])
+@pytest.mark.parametrize("where", ["--jobs 2", pytest.param("--cluster local:2", marks=pytest.mark.long)])
 def test_ctrl_c_leaves_a_tournament_to_resume(tmp_path: Path, where: str) -> None:
     line = f"tournament hold b=hold --steps 20000 --out run {where}"
     command = [sys.executable, "-m", "airhockey.cli", *line.split()]

@@ -73,11 +73,15 @@ _thread: threading.Thread | None = None
 def watch(agent: Watched) -> None:
     """Look at an agent until nobody else knows it any more, or `forget` is called."""
     global _thread
+    begun: threading.Thread | None = None
     with _lock:
         _all.add(agent)
-        if _thread is None or not _thread.is_alive():
-            _thread = threading.Thread(target=_look_at_all, name="memory watch", daemon=True)
-            _thread.start()
+        ended = _thread is not None and _thread.ident is not None and not _thread.is_alive()  # after a fork
+        if _thread is None or ended:
+            begun = _thread = threading.Thread(target=_look_at_all, name="memory watch", daemon=True)
+    if begun is not None:
+        # Without the lock: a collection in the new thread may close an agent and forget it before it says that it runs.
+        begun.start()
 
 
 def forget(agent: Watched) -> None:

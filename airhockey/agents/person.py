@@ -98,7 +98,7 @@ class PersonAgent(AgentBase):
 
     @property
     def target(self) -> Array:
-        """Where the mallet is led, in the robot frame's place on the table, in [m]. Shape (2,)."""
+        """Where the mallet is led, in the table frame seen from its own side, in [m]. Shape (2,)."""
         return HAND.target
 
     def draw_action(self, observation: Array) -> Array:

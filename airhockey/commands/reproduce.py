@@ -37,15 +37,14 @@ def reproduce(ctx: click.RichContext, /, **given: Any) -> None:
     from airhockey.commands import _progress
     from airhockey.commands._session import Session, cpus
     from airhockey.evaluator.engines.engine import engine_for
-    from airhockey.evaluator.runs.disk import replace_file
     from airhockey.reproduction.experiments import ReproductionOptions, experiments, quick
     from airhockey.reproduction.folder import PAGE, ReproductionFolder
-    from airhockey.reproduction.page import thesis_page
+    from airhockey.reproduction.page import write_page
 
     parts = (*(f"table-{one}" for one in given["tables"]), *(f"figure-{one}" for one in given["figures"]))
     session = Session("reproduce thesis", given, common.typed_options(ctx, given))
     options = quick(given["seed"]) if given["quick"] else ReproductionOptions(seed=given["seed"])
-    planned = experiments(options, parts)
+    experiments(options, parts)  # a table that there is not is refused before a folder is made
     name = f"thesis{'-quick' if given['quick'] else ''}-s{options.seed}"
     folder = session.open(options, name, ReproductionFolder.begin, ReproductionFolder.resume)
     planned = experiments(folder.manifest.options, parts)
@@ -65,8 +64,10 @@ def reproduce(ctx: click.RichContext, /, **given: Any) -> None:
                     more(one.size)
                     continue
                 tell(f"{number}/{len(planned)} {one.key}: {one.size:,} episodes")
+                if folder.records:
+                    write_page(folder)
                 folder.play(one, engine, more)
-                replace_file(folder.path / PAGE, thesis_page(folder.path, {str(key) for key in folder.done}).encode())
+            write_page(folder)  # also where a kill came between the last run and its page
 
     def show(_: None) -> int:
         click.echo(folder.path / PAGE)

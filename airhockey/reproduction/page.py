@@ -2,13 +2,21 @@
 
 from pathlib import Path
 
+from airhockey.evaluator.runs.disk import disk_errors, replace_file
 from airhockey.reporting.blocks import facts, section
 from airhockey.reporting.markup import Markup
 from airhockey.reporting.page import contents, page
 from airhockey.reproduction.experiments import PARTS, experiments
 from airhockey.reproduction.figures import figure_section
-from airhockey.reproduction.folder import ReproductionFolder
+from airhockey.reproduction.folder import PAGE, ReproductionFolder
 from airhockey.reproduction.tables import game_section, task_section
+
+
+def write_page(folder: ReproductionFolder) -> None:
+    """Leave the page of what is finished in the folder; raises `AirHockeyError` where the disk is full."""
+    content = thesis_page(folder.path, {str(key) for key in folder.done}).encode()
+    with disk_errors(folder.path):
+        replace_file(folder.path / PAGE, content)
 
 
 def thesis_page(path: Path, done: set[str]) -> str:

@@ -88,8 +88,9 @@ class Stage:
             self.reward = TaskReward()
         elif isinstance(self.reward, HitReward):
             self.reward = HitReward(self.discount)
-        self.env.reset(seed=np.random.SeedSequence(self.seed, spawn_key=(_FIXED_START,)))
-        self._start = self.env.base_observation
+        if self.fixed != "none":
+            self.env.reset(seed=np.random.SeedSequence(self.seed, spawn_key=(_FIXED_START,)))
+            self._start = self.env.base_observation
 
     def seat(self, parameters: ThesisParameters) -> Seat:
         """The seat of the rule-based player; a switcher is offered every task, and on the way home there is none."""

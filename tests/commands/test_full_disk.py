@@ -9,8 +9,12 @@ import pytest
 from command_line import Hockey
 from outcomes import outcome
 
+from airhockey.errors import AirHockeyError
 from airhockey.evaluator.runs.game_records import GameRecord
 from airhockey.evaluator.runs.journal import read_journal
+from airhockey.reproduction.experiments import quick
+from airhockey.reproduction.folder import PAGE, ReproductionFolder
+from airhockey.reproduction.page import write_page
 from submissions import make_submission
 
 
@@ -99,3 +103,12 @@ def test_an_archive_a_page_and_a_film(hockey: Hockey, tmp_path: Path) -> None:
             status, _, err = hockey(line)
             assert status == 2 and err.count("\n") == 1 and "cannot write" in err
     assert sorted(Path.cwd().rglob("*")) == before
+
+
+def test_the_page_of_a_reproduction(tmp_path: Path) -> None:
+    with ReproductionFolder.begin(quick(0), tmp_path / "run") as folder:
+        with no_file_larger_than(1900), pytest.raises(AirHockeyError, match="cannot write"):
+            write_page(folder)
+        assert not list(tmp_path.rglob("*.html")) and not list(tmp_path.rglob("*.part*"))
+        write_page(folder)
+        assert "17 experiments" in (folder.path / PAGE).read_text(encoding="utf-8")

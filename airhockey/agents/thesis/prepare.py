@@ -30,8 +30,8 @@ Array = NDArray[np.float64]
 
 _STILL = 0.03
 """Speed below which a puck is at rest, in [m]/[s]."""
-_STOPPED = 0.0005
-"""Way of a step below which the mallet has stopped, in [m]."""
+_STOPPED = 0.002
+"""Way of a step below which the mallet has stopped, in [m]: noise moves its aim by a millimetre."""
 _LEFT = 0.01
 """Way of the puck below which a push was in vain, in [m]."""
 

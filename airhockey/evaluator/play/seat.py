@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.agents.packaging.unfetched import FETCH, missing_from
+from airhockey.envs.copying import NotCopyable
 from airhockey.evaluator.isolation.failures import agent_failures, describe
 from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.play.blame import fault_of_machine
@@ -41,7 +42,7 @@ class Care:
     watch: Watch = field(default_factory=Watch)
 
 
-class Seat:
+class Seat(NotCopyable):
     """An agent under care.
 
     Args:

@@ -115,6 +115,24 @@ def test_compiled_code_that_is_other_than_its_source_is_not_seen(tmp_path: Path,
     agent.close()
 
 
+CONNECTING = """server, kept = socket.create_server(("127.0.0.1", 0), backlog=64), []
+while len(kept) < 100:
+    kept.append((socket.create_connection(server.getsockname()), server.accept()[0]))
+time.sleep(30)"""
+
+
+def test_connections_to_itself_without_end_are_counted(bad: Callable[..., str], sandbox: None) -> None:
+    """What waits in them is the kernel's memory, of which all of a machine has one share."""
+    env = envs.make("3dof-hit")
+    agent = build_agent(bad(CONNECTING), env, mode="sandbox")
+    agent.episode_start()
+    observation = env.reset(seed=0)
+    for _ in range(2):
+        agent.act(observation)
+    with pytest.raises(AgentDied, match="more than 128 sockets"):
+        agent.act(observation)
+
+
 def test_empty_files_without_end_are_counted(bad: Callable[..., str], sandbox: None) -> None:
     """They take no space where files lie, but the kernel's memory."""
     making = "for k in range(10**6): os.close(os.open(f'/tmp/{k}', os.O_CREAT))"

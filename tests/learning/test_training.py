@@ -1,5 +1,6 @@
 """Training runs as a whole: the loop against a problem in closed form, and against real episodes."""
 
+import json
 import os
 import signal
 import subprocess
@@ -113,6 +114,26 @@ def test_a_sigma_that_explodes_stops_the_run(tmp_path):
     with pytest.raises(DivergedError, match=r"σ (exploded|collapsed)"):
         run(tmp_path, Bowl(), iterations=50, learning_rate=60.0)
     assert all(np.isfinite(one.mean).all() for one in read_journal(tmp_path, Iteration).records)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda line: line["theta"][0].pop(),
+        lambda line: line["theta"].pop(),
+        lambda line: line["returns"].pop(),
+        lambda line: line["penalties"].append(0.0),
+        lambda line: line["mean"].reverse(),
+        lambda line: line.update(sigma=[]),
+    ],
+)
+def test_a_broken_journal_ends_in_a_line_that_names_it(tmp_path, change):
+    run(tmp_path, Bowl(), iterations=2)
+    lines = [json.loads(line) for line in (tmp_path / "journal.jsonl").read_text().splitlines()]
+    change(lines[-1])
+    (tmp_path / "journal.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    with pytest.raises(AirHockeyError, match="journal"):
+        training.train(training.resume(tmp_path, {"iterations": 3}), Bowl())
 
 
 def test_a_journal_of_another_search_is_not_taken_up(tmp_path):

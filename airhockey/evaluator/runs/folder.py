@@ -21,7 +21,7 @@ from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.runs import journal
 from airhockey.evaluator.runs.disk import begin_folder, disk_errors, lock_folder, write_record
-from airhockey.evaluator.runs.inputs import check_unchanged, hashes_of
+from airhockey.evaluator.runs.inputs import check_unchanged, hashes_of, in_full
 from airhockey.evaluator.runs.journal import Record
 from airhockey.evaluator.runs.manifest import (
     Manifest,
@@ -86,6 +86,7 @@ class RunFolder(NotCopyable, Generic[Options, Record]):
         Raises:
             ConfigurationError: An option has no meaning, or the folder holds something or cannot be written.
         """
+        options = in_full(options)
         cls.check(options)
         return cls.create(
             path,

@@ -33,7 +33,7 @@ def _folder(
         entry.mkdir()
         for name, content, usual in (
             ("submission.yaml", metadata, NOBODY),
-            ("agent_config.yml", config, "interpolation_order: 3\n"),
+            ("agent_config.yml", config, "interpolation_order: 3\nenv: 3dof-hit\n"),
             ("agent_builder.py", builder, GOOD),
         ):
             given = usual if content is None else content

@@ -141,3 +141,12 @@ def test_an_agent_by_a_relative_path_is_known_by_its_content_too(
     for again, name in ((resume, "run"), (resume_match, "match")):
         with pytest.raises(ConfigurationError, match=r"another content of '/.*/mine'"):
             again(tmp_path / name, {})
+
+
+def test_a_path_that_is_no_text_is_refused_before_anything_is_written(tmp_path: Path) -> None:
+    agent = os.fsdecode(os.fsencode(tmp_path) + b"/\xff\xfe")
+    os.mkdir(agent)
+    Path(agent, "agent_builder.py").write_text("x = 1\n")
+    with pytest.raises(ConfigurationError, match=r"\\udcff\\udcfe is not UTF-8 text"):
+        begin(options(agent), tmp_path / "run")
+    assert not (tmp_path / "run").exists()

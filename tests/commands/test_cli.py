@@ -109,6 +109,7 @@ def test_one_task_as_json(hockey: Hockey) -> None:
     assert json.loads(Path("runs/7dof-hit-hold-server-s5/result.json").read_text()) == result
 
 
+@pytest.mark.long
 def test_a_cluster_gives_what_this_machine_gives(hockey: Hockey) -> None:
     """But for the time that it took."""
     run = "evaluate --env 3dof-defend --agent hold --episodes 20 --disturbances server --json --quiet"

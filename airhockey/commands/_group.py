@@ -31,6 +31,7 @@ class LazyGroup(click.RichGroup):
         "replay",
         "video",
         "failures",
+        "identify",
         "report",
         "leaderboard",
         "train",

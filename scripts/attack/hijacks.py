@@ -77,6 +77,7 @@ COMMANDS: dict[str, tuple[tuple[str, ...], ...]] = {
         ("plot", "learned"),
     ),
     "failures": ((*HOLD, "run"), ("failures", "run")),
+    "identify": ((*HOLD, "run"), ("identify", "run", "-o", "found.yaml")),
     "doctor": (("doctor",), ("--help",), ("--version",)),
     "train ppo": (
         (

@@ -31,6 +31,8 @@ class LazyGroup(click.RichGroup):
         "replay",
         "video",
         "failures",
+        "export",
+        "check-trajectory",
         "report",
         "leaderboard",
         "train",

@@ -110,6 +110,8 @@ class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
         process: Where the agent lived.
         error: Why the agent failed the episode; None where it did not.
         edition: The year whose rules applied.
+        interpolation_order: Of the agent's actions, "none" for 20 set-points; None where no step was played, and in journals
+            that are older than this field.
     """
 
     env: str
@@ -122,6 +124,7 @@ class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
     process: AgentProcess = AgentProcess()
     error: str | None = None
     edition: str = DEFAULT
+    interpolation_order: int | Literal["none"] | None = None
 
     @property
     def job(self) -> Job:

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 )
 @common.options(*common.PLAY, common.python, common.clock)
 @click.option("--official-dataset", is_flag=True, help="Also write the files of an official evaluation.")
-@common.options(*common.RUN, common.as_json)
+@common.options(common.trajectories, *common.RUN, common.as_json)
 @click.pass_context
 def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
     """Evaluate an agent: success, violations, penalty and computation time over many episodes.
@@ -63,6 +63,8 @@ def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
     typed = common.typed_options(ctx, given)
     if given["env"] is not None and typed & {"task", "robot"}:
         raise click.UsageError("--env names task and robot already: leave out --task and --robot")
+    if given["official_dataset"] and given["trajectories"] == "none":
+        raise click.UsageError("--official-dataset is made of trajectories: --trajectories full or actions")
     from airhockey.commands import _progress, _tables
     from airhockey.commands._session import AGENT_FAILED, Session
     from airhockey.evaluator import evaluation
@@ -89,6 +91,8 @@ def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
 
 
 def _options(given: dict[str, Any]) -> "Options":
+    from msgspec import UNSET
+
     from airhockey.commands._session import (
         agent_of,
         agent_seed_of,
@@ -101,6 +105,7 @@ def _options(given: dict[str, Any]) -> "Options":
     from airhockey.evaluator import Options
     from airhockey.evaluator.isolation.modes import choose
 
+    keep = given["trajectories"]
     default = "planner" if given["parameters"] is None else "thesis"  # the one that reads them
     agent, order = agent_of(given["agent"] or default), given["interpolation_order"]
     python = python_of(given["python"])
@@ -120,6 +125,7 @@ def _options(given: dict[str, Any]) -> "Options":
         real_time=real_time_of(given, {agent: python}, environments[0], edition),
         python=python,
         settings=given["settings"],
+        keep=UNSET if keep == "full" else keep,
         agent_seed=agent_seed_of(given["agent_seed"], (agent,)),
         parameters=None if given["parameters"] is None else from_anywhere(given["parameters"]),
     )

@@ -36,6 +36,8 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
         agent_seed: Secret from which the seeds of the agent's own generators come, in hexadecimal, so that no agent can find the
             environment's; None for seeds that follow from `seed`.
         parameters: Of the rule-based player: a name that it knows or the absolute path of a YAML file; None for its own.
+        keep: What is kept of trajectories, see `airhockey.evaluator.runs.keeping`; UNSET, which manifests do not mention, for
+            all of it.
     """
 
     environments: tuple[str, ...]
@@ -53,6 +55,12 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     settings: tuple[str, ...] = ()
     parameters: str | None = None
     agent_seed: str | None = None
+    keep: Literal["actions", "none"] | msgspec.UnsetType = msgspec.field(default=msgspec.UNSET, name="trajectories")
+
+    @property
+    def trajectories(self) -> Literal["full", "actions", "none"]:
+        """What is kept of them."""
+        return "full" if self.keep is msgspec.UNSET else self.keep
 
     def __post_init__(self) -> None:
         """Environments go by the names of their edition, whichever they were given by; checks complain about others."""

@@ -18,7 +18,16 @@ from airhockey.evaluator.runs.game_records import GameRecord, file_name
 from airhockey.evaluator.runs.journal import NAME as JOURNAL
 from airhockey.evaluator.runs.journal import Record, read_journal
 from airhockey.evaluator.runs.keeping import NONE
-from airhockey.evaluator.runs.manifest import MATCH, RUN, TOURNAMENT, Manifest, option_of, read_manifest, was_edited
+from airhockey.evaluator.runs.manifest import (
+    MATCH,
+    RUN,
+    SWEEP,
+    TOURNAMENT,
+    Manifest,
+    option_of,
+    read_manifest,
+    was_edited,
+)
 from airhockey.evaluator.runs.records import EpisodeRecord, Job, Options
 from airhockey.evaluator.runs.trajectories import TRAJECTORIES
 from airhockey.evaluator.schedule import TournamentOptions
@@ -152,9 +161,19 @@ def open_source(path: Path) -> Source:
         return Unreadable(path, notes=found.notes if found.records else [*found.notes, what])
     if not path.exists():
         return Unreadable(path, notes=["there is no such folder"])
+    if (path / SWEEP).exists():
+        runs = ", ".join(part.name for part in parts_of(path)) or "none is begun"
+        return Unreadable(path, notes=[f"it is a sweep: name one of its runs ({runs})"])
     if not path.is_dir():
         return Unreadable(path, notes=["it is not a folder; give the folder of a run, a match or a tournament"])
     return Unreadable(path, notes=[f"it holds no results: there is none of {', '.join(MANIFESTS)} in it"])
+
+
+def parts_of(path: Path) -> list[Path]:
+    """The runs of a sweep, in the order of their names; the path itself where there is none."""
+    if not (path / SWEEP).exists():
+        return [path]
+    return sorted((manifest.parent for manifest in path.glob(f"*/{RUN}")), key=_natural)
 
 
 def look_into(path: Path) -> Run | Games[Any] | None:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs.editions import DEFAULT, available, edition
+from airhockey.evaluator.runs import notebook
 
 Trajectory = dict[str, NDArray[np.float64]]
 """One episode's arrays by name; `airhockey.evaluator.play.episode.Recorder.trajectory` says which."""
@@ -206,6 +207,9 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
         """The results of the single tasks: this one."""
         return (self,)
 
+    def _repr_html_(self) -> str:
+        return _as_html(self.tasks)
+
 
 class RunResult(msgspec.Struct, frozen=True, kw_only=True):
     """The results of several tasks, and of the whole where every task of a phase was played.
@@ -227,3 +231,20 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
     def tasks(self) -> tuple[TaskResult, ...]:
         """The results of the single tasks."""
         return self.results
+
+    def _repr_html_(self) -> str:
+        score = "" if self.score is None else f", {self.phase} score {self.score:.3f}"
+        return _as_html(self.results, f"overall {self.deployability}{score}")
+
+
+def _as_html(results: tuple[TaskResult, ...], more: str = "") -> str:
+    first = results[0]
+    return notebook.table(
+        f"{first.agent}, seed {first.seed}, disturbances {first.disturbances}" + (more and f": {more}"),
+        ("task", "episodes", "success", "penalty", "class", "draw_action mean", "agent failed"),
+        (
+            (one.env, one.episodes, f"{one.success:.1%}", f"{one.penalty:g}", one.deployability,
+             f"{1e3 * one.computation_time.mean:.3f} ms", one.agent_errors)
+            for one in results
+        ),
+    )  # fmt: skip

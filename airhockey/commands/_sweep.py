@@ -79,7 +79,7 @@ def _options(given: Given, options_of: Callable[[Given], "Options"]) -> Any:
         for profile in given["disturbances"]
     ]
     return SweepOptions(
-        agents=tuple(dict.fromkeys(base.agent for base in bases)) if len(set(agents)) == len(agents) else tuple(agents),
+        agents=tuple(base.agent for base in bases[:: len(given["disturbances"])]),
         profiles=tuple(base.disturbances for base in bases[: len(given["disturbances"])]),
         seeds=given["seeds"],
         runs=tuple(msgspec.structs.replace(base, seed=base.seed + k) for base in bases for k in range(given["seeds"])),

@@ -10,7 +10,6 @@ import hashlib
 from typing import Any, Literal, get_args
 
 import msgspec
-import numpy as np
 
 from airhockey.envs.disturbances import Disturbances
 from airhockey.errors import ConfigurationError
@@ -44,7 +43,7 @@ def checksum(trajectory: Trajectory) -> bytes:
     digest = hashlib.blake2b(digest_size=CHECKSUM)
     for name in sorted(trajectory.keys() - set(KEPT[ACTIONS])):
         digest.update(name.encode())
-        digest.update(np.ascontiguousarray(trajectory[name]))
+        digest.update(trajectory[name].tobytes())
     return digest.digest()
 
 

@@ -1,10 +1,11 @@
 """The manifest: what a run is, written when it begins; whoever takes it up again must mean the same run.
 
-run.json  match.json  tournament.json  train.json  reproduction.json
+run.json  match.json  tournament.json  sweep.json  train.json  reproduction.json
 """
 
 import datetime
 import hashlib
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -17,11 +18,13 @@ from airhockey.errors import ConfigurationError
 Options = TypeVar("Options")
 Kind = TypeVar("Kind", bound="Manifest[Any]")
 RUN, MATCH, TOURNAMENT, TRAINING = "run.json", "match.json", "tournament.json", "train.json"
-REPRODUCTION = "reproduction.json"
+REPRODUCTION, SWEEP = "reproduction.json", "sweep.json"
 KINDS = {
-    RUN: "run", MATCH: "match", TOURNAMENT: "tournament", TRAINING: "training run", REPRODUCTION: "reproduction"
+    RUN: "run", MATCH: "match", TOURNAMENT: "tournament", TRAINING: "training run", REPRODUCTION: "reproduction", SWEEP: "sweep"
 }  # fmt: skip
 """A manifest's file name -> what it is the manifest of."""
+SEALED_SINCE = (0, 1)
+"""The version of airhockey since which manifests are sealed, as far as it decides."""
 
 
 class Manifest(msgspec.Struct, Generic[Options], frozen=True, kw_only=True):
@@ -34,7 +37,7 @@ class Manifest(msgspec.Struct, Generic[Options], frozen=True, kw_only=True):
         created: Local time, ISO 8601.
         format: Of the run's folder.
         inputs: Path of an agent or a file -> SHA-256 of its content.
-        seal: SHA-256 of everything else but the time; "" in manifests that are older than this field.
+        seal: SHA-256 of everything else but the time; "" in manifests that are older than `SEALED_SINCE`.
     """
 
     options: Options
@@ -63,16 +66,25 @@ def sealed(manifest: Kind) -> Kind:
     return msgspec.structs.replace(manifest, seal=hashlib.sha256(msgspec.json.encode(bare)).hexdigest())
 
 
-def was_edited(manifest: Manifest[Any]) -> bool:
-    """Whether a manifest is another than what was written."""
-    return bool(manifest.seal) and sealed(manifest).seal != manifest.seal
+def what_became_of(manifest: Manifest[Any]) -> str | None:
+    """What happened to a manifest since it was written, to be put behind its name; None where it is what was written."""
+    if not manifest.seal:
+        return "was made before there were seals" if _is_older(manifest) else "has lost its seal"
+    return "was edited since it was written" if sealed(manifest).seal != manifest.seal else None
+
+
+def _is_older(manifest: Manifest[Any]) -> bool:
+    """Whether the software that wrote a manifest knew no seals; what names no version is taken for the newest."""
+    numbers = re.match(r"(\d{1,9})\.(\d{1,9})", manifest.versions.get("airhockey", ""))
+    return numbers is not None and (int(numbers[1]), int(numbers[2])) < SEALED_SINCE
 
 
 def check_seal(path: Path, name: str, manifest: Manifest[Any]) -> None:
-    """What goes on must be what was begun; raises `ConfigurationError` for a manifest that was edited."""
-    if was_edited(manifest):
+    """What goes on must be what was begun; raises `ConfigurationError` for a manifest that is not what was written."""
+    what = what_became_of(manifest)
+    if what is not None:
         raise ConfigurationError(
-            f"{str(path / name)!r} was edited since it was written: one result would come from two runs; put its content back, "
+            f"{str(path / name)!r} {what}: one result would come from two runs; put its content back, "
             "or begin a new run with another --out"
         )
 
@@ -116,12 +128,16 @@ def read_manifest(
 
 def has_option(options: Any, name: str) -> bool:
     """Whether there is such an option."""
-    return hasattr(options, name) or hasattr(getattr(options, "game", None), name)
+    return hasattr(options, name) or hasattr(_inner(options), name)
 
 
 def option_of(options: Any, name: str) -> Any:
-    """An option by its name; those of a game are in the field `game`."""
-    return getattr(options, name) if hasattr(options, name) else getattr(options.game, name)
+    """An option by its name; those of a game are in the field `game`, those of a sweep in its first run."""
+    return getattr(options if hasattr(options, name) else _inner(options), name)
+
+
+def _inner(options: Any) -> Any:
+    return options.game if hasattr(options, "game") else next(iter(getattr(options, "runs", ())), None)
 
 
 def check_same_run(path: Path, manifest: Manifest[Any], asked: Mapping[str, Any]) -> None:

@@ -8,6 +8,8 @@ that the planner asks for, at the y that leaves most room for run-up and braking
 would leave at the bound. All in [m]/[s].
 """
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -62,6 +64,7 @@ def bounds(place: Array, direction: Array, posture: Array) -> tuple[float, float
     return found[0], max(found)
 
 
+@cache
 def lines() -> list[str]:
     """The table, as Markdown."""
     parameters = smash_parameters(IIWA, in_game=True)

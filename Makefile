@@ -33,6 +33,7 @@ layers: .venv/dev.installed
 docs: .venv/dev.installed
 	$(BIN)/python scripts/command_reference.py docs/commands.md
 	$(BIN)/python scripts/rules_pages.py docs/rules
+	$(BIN)/python scripts/api_reference.py docs/api
 	$(BIN)/zensical build --strict --clean
 
 players: .venv/dev.installed

@@ -73,6 +73,8 @@ FIGURES: dict[str, Callable[[int], list[str]]] = {
         for profile in PROFILES
     ],
     "ten-lines": lambda _: [f"python benchmarks/ten_lines.py --seed {seed}" for seed in (0, 1)],
+    "behaviour-cloning": lambda _: ["python benchmarks/behaviour_cloning.py"],
+    "trajectory-size": lambda _: ["python benchmarks/trajectory_size.py"],
     "vector-rate": lambda _: ["python benchmarks/vector_rate.py"],
 }
 """Name -> its commands, from the number of episodes of each."""

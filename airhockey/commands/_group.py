@@ -32,6 +32,8 @@ class LazyGroup(click.RichGroup):
         "video",
         "failures",
         "identify",
+        "export",
+        "check-trajectory",
         "report",
         "leaderboard",
         "train",

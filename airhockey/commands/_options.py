@@ -120,6 +120,14 @@ player_settings = click.option(
     metavar="[PLAYER:]PART.NAME=VALUE",
     help="Change a parameter of our players, or of one, as in away:control.solver=osqp or home:thesis.parameters=thesis.",
 )
+trajectories = click.option(
+    "--trajectories",
+    type=click.Choice(["full", "actions", "none"]),
+    default="full",
+    show_default=True,
+    help="What is kept of every step: all of it; the actions alone, from which the rest is computed again when it is read "
+    "(a seventh of the size); or nothing but computation times.",
+)
 out = click.option("--out", metavar="FOLDER", help="Run folder.  [default: a new one under runs/]")
 resume = click.option("--resume", is_flag=True, help="Continue the run in --out; its options need not be repeated.")
 as_json = click.option("--json", "as_json", is_flag=True, help="Print the result as one JSON object, and nothing else.")

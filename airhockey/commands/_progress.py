@@ -120,6 +120,18 @@ def of_frames(quiet: bool) -> Iterator[Callable[[int, int], None] | None]:
 
 
 @contextlib.contextmanager
+def of_files(what: str, total: int, quiet: bool) -> Iterator[Callable[[], None]]:
+    """Show how many episodes are written; call what it gives after each."""
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+        yield lambda: None
+        return
+    with _bar(console, transient=True) as bar:
+        task = bar.add_task(what, total=total)
+        yield lambda: bar.advance(task)
+
+
+@contextlib.contextmanager
 def of_pages(quiet: bool) -> Iterator[Callable[[str], None]]:
     """Show what is being done: in one changing line on a terminal, in lines elsewhere."""
     console = Console(stderr=True, quiet=quiet)

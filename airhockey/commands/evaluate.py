@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 @common.options(common.robot, common.env, common.edition)
 @click.option(
     "--agent",
+    multiple=True,
     metavar="NAME|PATH|tcp://…",
-    help="One of `hockey agents`, the folder or archive of a submission, or tcp://HOST:PORT.  "
+    help="One of `hockey agents`, the folder or archive of a submission, or tcp://HOST:PORT; several are compared.  "
     "[default: planner; thesis where --parameters are given]",
 )
 @click.option(
@@ -35,7 +36,23 @@ if TYPE_CHECKING:
 )
 @common.options(common.settings)
 @click.option("--episodes", type=click.IntRange(min=1), default=1000, show_default=True, help="Episodes of each task.")
-@common.options(common.seed, common.agent_seed, common.jobs, common.cluster, common.disturbances)
+@common.options(common.seed)
+@click.option(
+    "--seeds",
+    type=click.IntRange(min=1),
+    default=1,
+    show_default=True,
+    help="Play with so many: --seed and the next ones.",
+)
+@common.options(common.agent_seed, common.jobs, common.cluster)
+@click.option(
+    "--disturbances",
+    multiple=True,
+    metavar="NAME|PATH",
+    default=("ideal",),
+    show_default="ideal",
+    help="Profile ideal, server or harsh, or a YAML file; several are played one after the other.",
+)
 @click.option(
     "--interpolation-order",
     type=click.Choice(["1", "2", "3", "4", "5", "-1", "none"]),
@@ -43,7 +60,7 @@ if TYPE_CHECKING:
 )
 @common.options(*common.PLAY, common.python, common.clock)
 @click.option("--official-dataset", is_flag=True, help="Also write the files of an official evaluation.")
-@common.options(*common.RUN, common.as_json)
+@common.options(common.trajectories, *common.RUN, common.as_json)
 @click.pass_context
 def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
     """Evaluate an agent: success, violations, penalty and computation time over many episodes.
@@ -59,11 +76,21 @@ def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
     hockey evaluate --edition 2025 --episodes 100
     hockey evaluate --env 3dof-hit --agent submissions/my_agent --episodes 100 --jobs 1
     hockey evaluate --resume --out runs/7dof-prepare-planner-s0
+    hockey evaluate --task hit --agent planner --agent thesis --disturbances ideal --disturbances server --seeds 5
+
+    Several agents, disturbances or seeds are a sweep: one run, whose parts are runs themselves, with one table of success, its
+    intervals, and tests of agents in pairs over the same episodes (exact McNemar, adjusted by Holm).
     """
     typed = common.typed_options(ctx, given)
     if given["env"] is not None and typed & {"task", "robot"}:
         raise click.UsageError("--env names task and robot already: leave out --task and --robot")
-    from airhockey.commands import _progress, _tables
+    if given["official_dataset"] and given["trajectories"] == "none":
+        raise click.UsageError("--official-dataset is made of trajectories: --trajectories full or actions")
+    from airhockey.commands import _progress, _sweep, _tables
+
+    if _sweep.asked_for(given):
+        ctx.exit(_sweep.run(given, typed, _options))
+    given = _sweep.alone(given)
     from airhockey.commands._session import AGENT_FAILED, Session
     from airhockey.evaluator import evaluation
     from airhockey.evaluator.official import write_official
@@ -89,6 +116,8 @@ def evaluate(ctx: click.RichContext, /, **given: Any) -> None:
 
 
 def _options(given: dict[str, Any]) -> "Options":
+    from msgspec import UNSET
+
     from airhockey.commands._session import (
         agent_of,
         agent_seed_of,
@@ -101,6 +130,7 @@ def _options(given: dict[str, Any]) -> "Options":
     from airhockey.evaluator import Options
     from airhockey.evaluator.isolation.modes import choose
 
+    keep = given["trajectories"]
     default = "planner" if given["parameters"] is None else "thesis"  # the one that reads them
     agent, order = agent_of(given["agent"] or default), given["interpolation_order"]
     python = python_of(given["python"])
@@ -120,6 +150,7 @@ def _options(given: dict[str, Any]) -> "Options":
         real_time=real_time_of(given, {agent: python}, environments[0], edition),
         python=python,
         settings=given["settings"],
+        keep=UNSET if keep == "full" else keep,
         agent_seed=agent_seed_of(given["agent_seed"], (agent,)),
         parameters=None if given["parameters"] is None else from_anywhere(given["parameters"]),
     )

@@ -22,7 +22,7 @@ from airhockey.commands import _options as common
 )
 @common.options(common.only_notes)
 def report(**given: Any) -> None:
-    """Make one page of RUN…: folders of `hockey evaluate`, `hockey match` or `hockey tournament`.
+    """Make one page of RUN…: folders of `hockey evaluate` (of a sweep, every run), `hockey match` or `hockey tournament`.
 
     The page needs nothing but itself: no network, no scripts. Several runs of a task are compared, with intervals and a
     test of significance, in pairs where their episodes had the same seeds. What a folder lacks is said on the page and on the
@@ -39,6 +39,7 @@ def report(**given: Any) -> None:
     from airhockey.commands._session import say_notes
     from airhockey.errors import AirHockeyError, ConfigurationError
     from airhockey.evaluator.runs.disk import replace_file
+    from airhockey.evaluator.runs.reader import parts_of
     from airhockey.reporting import words
     from airhockey.reporting.document import report
 
@@ -46,7 +47,7 @@ def report(**given: Any) -> None:
     if out.is_dir():
         raise ConfigurationError(f"--out {str(out)!r} is a folder; name a file, as in {str(out / 'report.html')!r}")
     with of_pages(given["quiet"]) as say:
-        page, notes = report([Path(folder) for folder in given["folders"]], say)
+        page, notes = report([part for folder in given["folders"] for part in parts_of(Path(folder))], say)
     content = page.encode()
     try:
         replace_file(out, content)

@@ -17,6 +17,7 @@ from airhockey.evaluator.play.blame import worker_lost
 from airhockey.evaluator.play.game import Game, GamePlayer, live_file, lost
 from airhockey.evaluator.play.seeding import game_seed
 from airhockey.evaluator.play.watchdog import culprit
+from airhockey.evaluator.runs import notebook
 from airhockey.evaluator.runs.game_folder import GameFolder
 from airhockey.evaluator.runs.game_records import (
     Event,
@@ -95,6 +96,17 @@ class MatchResult(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True)
     losses: int
     inputs: dict[str, str] = {}
     edition: str = DEFAULT
+
+    def _repr_html_(self) -> str:
+        return notebook.table(
+            f"{self.home} – {self.away}: {self.wins} won, {self.draws} drawn, {self.losses} lost",
+            ("game", "score", "goals", "faults", "penalty", "winner"),
+            (
+                (number, *("{} : {}".format(*of) for of in (game.score, game.goals, game.faults)),
+                 "{:g} : {:g}".format(*game.penalty), game.winner)
+                for number, game in enumerate(self.games, start=1)
+            ),
+        )  # fmt: skip
 
 
 class MatchFolder(GameFolder[MatchOptions]):

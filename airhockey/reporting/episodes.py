@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from airhockey.envs.compiled import MAX_END_EFFECTOR_Y, MIN_END_EFFECTOR_X
 from airhockey.envs.specs import IIWA
 from airhockey.evaluator.analysis.contacts import contacts, hits
-from airhockey.evaluator.runs.disk import opened_hdf5
+from airhockey.evaluator.runs.trajectories import read_groups
 
 Array = NDArray[np.float64]
 Table = NDArray[Any]
@@ -76,10 +76,9 @@ def read_task(files: Sequence[Path], env: str) -> TaskData | None:
 
 
 def _read_file(path: Path, env: str) -> Iterator[TaskData]:
-    with opened_hdf5(path) as file:
-        group = file.get(env)
-        if group is None or "rewards" not in group:
-            return
+    for group in read_groups(path, env):
+        if "rewards" not in group:
+            continue
         table = np.sort(group["episodes"][()], order="first_step")
         for block in _blocks(table[table["steps"] > 0]):
             yield _read_block(group, block)

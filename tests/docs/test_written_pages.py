@@ -26,6 +26,14 @@ def test_the_pages_are_those_of_the_editions(rules_pages: ModuleType) -> None:
     assert {f"{year}.md" for year in editions.available()} <= set(made)
 
 
+def test_the_reference_of_python_is_of_these_docstrings() -> None:
+    api_reference = load_script(ROOT, "api_reference")
+    kept = {file.name: file.read_text("utf-8") for file in (ROOT / "docs" / "api").iterdir()}
+    assert kept == api_reference.pages(), "make docs"
+    assert "### make\n\n```python\ndef make(" in kept["environments.md"]
+    assert "- `both, only_first, only_second, neither`: " in kept["evaluator.md"]
+
+
 def test_a_drawing_has_its_regions_on_the_table(rules_pages: ModuleType) -> None:
     for year in editions.available():
         rules = editions.edition(year)

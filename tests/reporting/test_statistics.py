@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from airhockey.reporting.statistics import compare_pairs, compare_samples, fisher, holm, mcnemar
+from airhockey.evaluator.judging.statistics import compare_pairs, compare_samples, fisher, holm, mcnemar
 
 
 @pytest.mark.parametrize(("only_first", "only_second"), [(0, 0), (0, 1), (3, 3), (1, 8), (9, 2), (12, 0)])

@@ -19,6 +19,7 @@ from typing import Any
 import msgspec
 
 from airhockey.envs.editions import DEFAULT
+from airhockey.evaluator.runs import notebook
 from airhockey.evaluator.runs.disk import disk_errors, replace_file, write_record
 from airhockey.evaluator.runs.game_records import GameJob, GameRecord, in_order
 
@@ -66,6 +67,17 @@ class Standings(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     games: int
     inputs: dict[str, str] = {}
     edition: str = DEFAULT
+
+    def _repr_html_(self) -> str:
+        return notebook.table(
+            f"{self.played} of {self.games} games",
+            ("", "name", "played", "won", "drawn", "lost", "goals", "points", "penalty", "rating"),
+            (
+                (row.rank, row.name, row.played, row.won, row.drawn, row.lost, f"{row.goals} : {row.conceded}", row.points,
+                 f"{row.penalty:g}", f"{row.rating:.1f} ± {row.uncertainty:.1f}")
+                for row in self.rows
+            ),
+        )  # fmt: skip
 
 
 class _Score:

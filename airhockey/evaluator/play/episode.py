@@ -49,6 +49,7 @@ def play(job: Job, rollout: Rollout, recorder: Recorder) -> Episode:
         process=seat.process,
         error=seat.failure,
         edition=rollout.env.edition.edition,
+        interpolation_order=None if not recorder.steps else "none" if seat.form.order is None else seat.form.order,
     )
     return Episode(record, trajectory)
 

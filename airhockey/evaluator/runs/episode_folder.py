@@ -19,6 +19,7 @@ from airhockey.evaluator.checks import check_options
 from airhockey.evaluator.runs import journal, trajectories
 from airhockey.evaluator.runs.disk import disk_errors
 from airhockey.evaluator.runs.folder import RunFolder
+from airhockey.evaluator.runs.keeping import Recipe
 from airhockey.evaluator.runs.manifest import RUN
 from airhockey.evaluator.runs.records import Episode, EpisodeRecord, Options
 from airhockey.inputs.broken import BROKEN, reading_errors
@@ -74,7 +75,7 @@ class EpisodeFolder(RunFolder[Options, EpisodeRecord]):
         with disk_errors(self.path):
             (self.path / SEGMENTS).mkdir(exist_ok=True)
             segment = self.path / SEGMENTS / f"{self._next_segment:06d}.h5"
-            trajectories.write(segment, episodes)
+            trajectories.write(segment, episodes, self.manifest.options.trajectories, self._recipe)
         self._next_segment += 1
         self.keep(*(episode.record for episode in episodes))
         self._flushed_at = time.monotonic()
@@ -97,6 +98,13 @@ class EpisodeFolder(RunFolder[Options, EpisodeRecord]):
         if records or (self.path / journal.NAME).exists():
             journal.mend(self.path, records)
         return records
+
+    @property
+    def _recipe(self) -> Recipe:
+        """What episodes are computed again from."""
+        manifest = self.manifest
+        options = manifest.options
+        return Recipe(seed=options.seed, edition=options.edition, profile=manifest.profile, versions=manifest.versions)
 
     def _recover_segment(self, segment: Path) -> list[EpisodeRecord]:
         """A segment's records; one that a power failure broke is put aside, and its episodes are played again."""

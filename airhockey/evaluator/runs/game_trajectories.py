@@ -45,10 +45,10 @@ def write_film(path: Path, rows: Rows, record: bytes) -> None:
         file.attrs["record"] = np.void(record)
 
 
-def read_film(path: Path) -> Rows:
-    """The base observations of a game. Shape (steps, 46)."""
+def read_film(path: Path, steps: slice = slice(None)) -> Rows:
+    """The base observations of a game, or of some of its steps. Shape (steps, 46)."""
     with opened_hdf5(path) as file:
-        return np.asarray(file["base_observations"])
+        return np.asarray(file["base_observations"][steps])
 
 
 def read_film_record(path: Path) -> GameRecord:

@@ -1,6 +1,6 @@
 """The manifest: what a run is, written when it begins; whoever takes it up again must mean the same run.
 
-run.json  match.json  tournament.json  train.json  reproduction.json
+run.json  match.json  tournament.json  sweep.json  train.json  reproduction.json
 """
 
 import datetime
@@ -18,9 +18,9 @@ from airhockey.errors import ConfigurationError
 Options = TypeVar("Options")
 Kind = TypeVar("Kind", bound="Manifest[Any]")
 RUN, MATCH, TOURNAMENT, TRAINING = "run.json", "match.json", "tournament.json", "train.json"
-REPRODUCTION = "reproduction.json"
+REPRODUCTION, SWEEP = "reproduction.json", "sweep.json"
 KINDS = {
-    RUN: "run", MATCH: "match", TOURNAMENT: "tournament", TRAINING: "training run", REPRODUCTION: "reproduction"
+    RUN: "run", MATCH: "match", TOURNAMENT: "tournament", TRAINING: "training run", REPRODUCTION: "reproduction", SWEEP: "sweep"
 }  # fmt: skip
 """A manifest's file name -> what it is the manifest of."""
 SEALED_SINCE = (0, 1)
@@ -128,12 +128,16 @@ def read_manifest(
 
 def has_option(options: Any, name: str) -> bool:
     """Whether there is such an option."""
-    return hasattr(options, name) or hasattr(getattr(options, "game", None), name)
+    return hasattr(options, name) or hasattr(_inner(options), name)
 
 
 def option_of(options: Any, name: str) -> Any:
-    """An option by its name; those of a game are in the field `game`."""
-    return getattr(options, name) if hasattr(options, name) else getattr(options.game, name)
+    """An option by its name; those of a game are in the field `game`, those of a sweep in its first run."""
+    return getattr(options if hasattr(options, name) else _inner(options), name)
+
+
+def _inner(options: Any) -> Any:
+    return options.game if hasattr(options, "game") else next(iter(getattr(options, "runs", ())), None)
 
 
 def check_same_run(path: Path, manifest: Manifest[Any], asked: Mapping[str, Any]) -> None:

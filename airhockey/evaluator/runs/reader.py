@@ -17,7 +17,17 @@ from airhockey.evaluator.runs import trajectories
 from airhockey.evaluator.runs.game_records import GameRecord, file_name
 from airhockey.evaluator.runs.journal import NAME as JOURNAL
 from airhockey.evaluator.runs.journal import Record, read_journal
-from airhockey.evaluator.runs.manifest import MATCH, RUN, TOURNAMENT, Manifest, option_of, read_manifest, what_became_of
+from airhockey.evaluator.runs.keeping import NONE
+from airhockey.evaluator.runs.manifest import (
+    MATCH,
+    RUN,
+    SWEEP,
+    TOURNAMENT,
+    Manifest,
+    option_of,
+    read_manifest,
+    what_became_of,
+)
 from airhockey.evaluator.runs.records import EpisodeRecord, Job, Options
 from airhockey.evaluator.runs.trajectories import TRAJECTORIES
 from airhockey.evaluator.schedule import TournamentOptions
@@ -151,9 +161,19 @@ def open_source(path: Path) -> Source:
         return Unreadable(path, notes=found.notes if found.records else [*found.notes, what])
     if not path.exists():
         return Unreadable(path, notes=["there is no such folder"])
+    if (path / SWEEP).exists():
+        runs = ", ".join(part.name for part in parts_of(path)) or "none is begun"
+        return Unreadable(path, notes=[f"it is a sweep: name one of its runs ({runs})"])
     if not path.is_dir():
         return Unreadable(path, notes=["it is not a folder; give the folder of a run, a match or a tournament"])
     return Unreadable(path, notes=[f"it holds no results: there is none of {', '.join(MANIFESTS)} in it"])
+
+
+def parts_of(path: Path) -> list[Path]:
+    """The runs of a sweep, in the order of their names; the path itself where there is none."""
+    if not (path / SWEEP).exists():
+        return [path]
+    return sorted((manifest.parent for manifest in path.glob(f"*/{RUN}")), key=_natural)
 
 
 def look_into(path: Path) -> Run | Games[Any] | None:
@@ -185,18 +205,22 @@ def _open_run(path: Path) -> Run:
     by_job: dict[Job, EpisodeRecord] = {}
     for file in _trajectory_files(run):
         try:
+            kept = trajectories.kept_in(file)
             found = {record.job: record for record in trajectories.read_records(file)}
         except BROKEN as error:
             what = f"cannot read {file.name}" if file.name == TRAJECTORIES else f"segment {file.name} cannot be read"
             run.notes.append(f"{what}: {reason(error, path)}")
         else:
             by_job |= found
-            run.stored |= dict.fromkeys(found, file)
+            if kept != NONE:
+                run.stored |= dict.fromkeys(found, file)
     for record in _read_journal(run, EpisodeRecord):
         by_job.setdefault(record.job, record)
     run.records = sorted(by_job.values(), key=lambda record: (record.env, record.index))
     missing = len(by_job) - len(run.stored)
-    if missing:
+    if missing and run.manifest is not None and run.manifest.options.trajectories == NONE:
+        run.notes.append(f"it was played with --trajectories {NONE}: there is nothing to look at, only records")
+    elif missing:
         run.notes.append(f"the trajectories of {missing} episodes are missing: only their records are left")
     _check_complete(run)
     return run

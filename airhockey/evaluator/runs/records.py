@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.envs.editions import DEFAULT, available, edition
+from airhockey.evaluator.runs import notebook
 
 Trajectory = dict[str, NDArray[np.float64]]
 """One episode's arrays by name; `airhockey.evaluator.play.episode.Recorder.trajectory` says which."""
@@ -36,6 +37,8 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
         agent_seed: Secret from which the seeds of the agent's own generators come, in hexadecimal, so that no agent can find the
             environment's; None for seeds that follow from `seed`.
         parameters: Of the rule-based player: a name that it knows or the absolute path of a YAML file; None for its own.
+        keep: What is kept of trajectories, see `airhockey.evaluator.runs.keeping`; UNSET, which manifests do not mention, for
+            all of it.
     """
 
     environments: tuple[str, ...]
@@ -53,6 +56,12 @@ class Options(msgspec.Struct, frozen=True, kw_only=True):
     settings: tuple[str, ...] = ()
     parameters: str | None = None
     agent_seed: str | None = None
+    keep: Literal["actions", "none"] | msgspec.UnsetType = msgspec.field(default=msgspec.UNSET, name="trajectories")
+
+    @property
+    def trajectories(self) -> Literal["full", "actions", "none"]:
+        """What is kept of them."""
+        return "full" if self.keep is msgspec.UNSET else self.keep
 
     def __post_init__(self) -> None:
         """Environments go by the names of their edition, whichever they were given by; checks complain about others."""
@@ -110,6 +119,8 @@ class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
         process: Where the agent lived.
         error: Why the agent failed the episode; None where it did not.
         edition: The year whose rules applied.
+        interpolation_order: Of the agent's actions, "none" for 20 set-points; None where no step was played, and in journals
+            that are older than this field.
     """
 
     env: str
@@ -122,6 +133,7 @@ class EpisodeRecord(msgspec.Struct, frozen=True, kw_only=True):
     process: AgentProcess = AgentProcess()
     error: str | None = None
     edition: str = DEFAULT
+    interpolation_order: int | Literal["none"] | None = None
 
     @property
     def job(self) -> Job:
@@ -195,6 +207,9 @@ class TaskResult(msgspec.Struct, frozen=True, kw_only=True):
         """The results of the single tasks: this one."""
         return (self,)
 
+    def _repr_html_(self) -> str:
+        return _as_html(self.tasks)
+
 
 class RunResult(msgspec.Struct, frozen=True, kw_only=True):
     """The results of several tasks, and of the whole where every task of a phase was played.
@@ -216,3 +231,20 @@ class RunResult(msgspec.Struct, frozen=True, kw_only=True):
     def tasks(self) -> tuple[TaskResult, ...]:
         """The results of the single tasks."""
         return self.results
+
+    def _repr_html_(self) -> str:
+        score = "" if self.score is None else f", {self.phase} score {self.score:.3f}"
+        return _as_html(self.results, f"overall {self.deployability}{score}")
+
+
+def _as_html(results: tuple[TaskResult, ...], more: str = "") -> str:
+    first = results[0]
+    return notebook.table(
+        f"{first.agent}, seed {first.seed}, disturbances {first.disturbances}" + (more and f": {more}"),
+        ("task", "episodes", "success", "penalty", "class", "draw_action mean", "agent failed"),
+        (
+            (one.env, one.episodes, f"{one.success:.1%}", f"{one.penalty:g}", one.deployability,
+             f"{1e3 * one.computation_time.mean:.3f} ms", one.agent_errors)
+            for one in results
+        ),
+    )  # fmt: skip

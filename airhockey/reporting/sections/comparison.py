@@ -5,15 +5,16 @@ from dataclasses import dataclass
 
 import msgspec
 
+from airhockey.evaluator.judging import statistics
+from airhockey.evaluator.judging.statistics import Difference
 from airhockey.evaluator.judging.tasks import wilson_interval
-from airhockey.reporting import statistics, words
+from airhockey.reporting import words
 from airhockey.reporting.blocks import figure, figures, paragraphs, section, table, tables
 from airhockey.reporting.draw.axes import Scale
 from airhockey.reporting.draw.intervals import Interval, interval_plot
 from airhockey.reporting.markup import Markup
 from airhockey.reporting.results import Task
 from airhockey.reporting.sections.quantities import side_by_side
-from airhockey.reporting.statistics import Difference
 
 SIGNIFICANT = 0.05
 _COLOURS = ("a", "b", "c", "d")

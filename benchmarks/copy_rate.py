@@ -6,8 +6,8 @@ A planning copy is what a search does at each node: save the present moment (`en
 (`env.set_state(state)`). Between the two the environment makes a step, which is not timed, so that nothing is as it was saved.
 The pair holds more than MuJoCo's data: controllers, filters, opponent, score, timers, random streams, what was seen of late.
 Bare is one `mj_copyData` of the same model into data that is there already. Also given, in copies per second: `env.copy()`, a
-whole environment of its own, and making a new one. The rates are those of the median block, so that another process on the
-machine disturbs all alike.
+whole environment of its own, and making a new one. The rates are those of the median copy, so that another process, which stops
+a few of them for milliseconds, disturbs none.
 """
 
 import argparse
@@ -45,21 +45,18 @@ def measure(name: str, profile: str, blocks: int, copies: int) -> tuple[float, f
     planning, plain, whole, new = [], [], [], []
     for block in range(blocks):
         env.reset(seed=block)
-        save = go_back = copy = 0.0
         for _ in range(copies):
             begin = time.perf_counter()
             state = env.get_state()
-            save += time.perf_counter() - begin
+            saved = time.perf_counter() - begin
             env.step(action)
             begin = time.perf_counter()
             env.set_state(state)
-            go_back += time.perf_counter() - begin
+            planning.append(saved + time.perf_counter() - begin)
             env.step(action)
             begin = time.perf_counter()
             mujoco.mj_copyData(bare, model, data)
-            copy += time.perf_counter() - begin
-        planning.append((save + go_back) / copies)
-        plain.append(copy / copies)
+            plain.append(time.perf_counter() - begin)
         whole.append(timed(env.copy))
         if block % 10 == 0:
             new.append(timed(lambda: envs.make(name, disturbances=profile)))
@@ -70,8 +67,8 @@ def measure(name: str, profile: str, blocks: int, copies: int) -> tuple[float, f
 def main() -> None:
     """Print a table: copies per second, and the ratio."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--blocks", type=int, default=60, help="blocks to take the median of")
-    parser.add_argument("--copies", type=int, default=200, help="planning copies in a block")
+    parser.add_argument("--blocks", type=int, default=60, help="how often to begin again")
+    parser.add_argument("--copies", type=int, default=200, help="planning copies each time")
     options = parser.parse_args()
     print(
         f"{'environment':22s} {'save + go back/s':>16s} {'bare copy/s':>12s} {'ratio':>6s} {'env.copy/s':>11s} {'make/s':>7s}"

@@ -77,6 +77,11 @@ COMMANDS: dict[str, tuple[tuple[str, ...], ...]] = {
         ("plot", "learned"),
     ),
     "failures": ((*HOLD, "run"), ("failures", "run")),
+    "export": (
+        (*HOLD, "run"),
+        ("export", "run", "--format", "csv-joints", "--episodes", "0", "-o", "arm"),
+        ("check-trajectory", "arm/0.csv"),
+    ),
     "identify": ((*HOLD, "run"), ("identify", "run", "-o", "found.yaml")),
     "doctor": (("doctor",), ("--help",), ("--version",)),
     "train ppo": (

@@ -1047,21 +1047,33 @@ def write_memory_of_others_by_vectors() -> object:
 
 @attempt
 def look_at_process_1_in_every_way() -> object:
+    """It is the sandbox's own, and of the same user: what it shows must be nothing of the host's."""
     got = []
-    for name in ("cwd", "exe", "root", "environ", "mem", "pagemap", "map_files", "personality", "io", "timers"):
+    for name in ("cwd", "exe", "root", "environ", "cmdline", "pagemap", "map_files", "io", "timers", "mountinfo"):
+        place = Path("/proc/1", name)
         try:
-            found = os.readlink(f"/proc/1/{name}") if name in ("cwd", "exe", "root") else ""
-            found = found or (os.listdir if name == "map_files" else lambda path: Path(path).read_bytes()[:80])(
-                f"/proc/1/{name}"
-            )
+            if name == "map_files":
+                found = " ".join(os.readlink(file) for file in place.iterdir())
+            else:
+                found = os.readlink(place) if place.is_symlink() else place.read_bytes().decode(errors="replace")
         except OSError:
             continue
-        if (
-            TOLD["token"] in str(found)
-            or str(Path(TOLD["secret"]).parent) in str(found)
-            or name in ("mem", "pagemap", "map_files")
-        ):
-            got.append(f"{name}: {found!r}")
+        if any(secret in found for secret in (TOLD["token"], TOLD["secret"], TOLD["opponent"])) or name == "pagemap":
+            got.append(f"{name}: {found[:80]!r}")
+    try:
+        with open("/proc/1/mem", "rb", buffering=0) as memory:
+            for line in Path("/proc/1/maps").read_text().splitlines():
+                begin, end = (int(number, 16) for number in line.split()[0].split("-"))
+                try:
+                    memory.seek(begin)
+                    held = memory.read(min(end - begin, 64 * MIB))
+                except (OSError, ValueError):
+                    continue
+                got += [
+                    f"{secret} in its memory" for secret in (TOLD["token"], TOLD["secret"]) if secret.encode() in held
+                ]
+    except OSError:
+        pass
     return got
 
 

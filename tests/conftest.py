@@ -2,6 +2,7 @@
 
 import os
 import signal
+from collections import Counter
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -28,7 +29,8 @@ EXPENSIVE = {
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Tests that share an expensive fixture run in one process, so that it is made once (`--dist loadgroup`).
 
-    What takes many seconds waits for `make long`, which runs everything; `make test` keeps a shorter one of its kind.
+    What takes many seconds waits for `make long`, which runs everything; `make test` keeps a shorter one of its kind, and of
+    many cases that are `sampled(n)` every n-th.
     """
     for item in items:
         for name in EXPENSIVE.keys() & set(getattr(item, "fixturenames", ())):
@@ -36,8 +38,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     if "LONG" in os.environ:
         return
     skip = pytest.mark.skip(reason="takes many seconds: make long")
+    cases: Counter[str] = Counter()
     for item in items:
-        if item.get_closest_marker("long") is not None:
+        sampled = item.get_closest_marker("sampled")
+        if sampled is not None:
+            name = item.nodeid.partition("[")[0]
+            cases[name] += 1
+        if item.get_closest_marker("long") is not None or (sampled and (cases[name] - 1) % sampled.args[0]):
             item.add_marker(skip)
 
 

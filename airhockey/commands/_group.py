@@ -33,6 +33,7 @@ class LazyGroup(click.RichGroup):
         "failures",
         "export",
         "check-trajectory",
+        "identify",
         "report",
         "leaderboard",
         "train",

@@ -46,6 +46,7 @@ def brute_force(jacobian, velocity, anchor, limits):
     return best.x
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(8))
 @pytest.mark.parametrize("solver", ["daqp", "osqp", "dual"])
 def test_equals_brute_force(seed, solver):

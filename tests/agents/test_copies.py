@@ -53,6 +53,7 @@ def play_on(agent: Any, env: Any, observation: Any, steps: int = AFTER) -> tuple
     return np.array(actions).tobytes(), observation
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("name", "env_name"), PLAYED)
 def test_every_copy_has_the_same_future_and_disturbs_nobody(name: str, env_name: str) -> None:
     agent, env, observation = mid_episode(name, env_name)

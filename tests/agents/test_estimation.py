@@ -122,6 +122,7 @@ def test_the_filter_is_better_than_the_observations_and_knows_how_good_it_is(qui
     assert 1.0 < np.mean(squares) < 12.0  # χ² with 5 degrees of freedom has mean 5
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("lost_shows", ["hold", "zero"])
 def test_a_lost_track_is_ridden_out(lost_shows):
     rng, filter_ = np.random.default_rng(3), PuckFilter()

@@ -87,6 +87,7 @@ def test_the_mallet_touches_the_puck_opposite_to_where_it_shall_go(model: ShotMo
     assert shot.value > 0.8
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("wall", [-1.0, 1.0])
 def test_a_bounced_shot_flies_to_where_it_is_aimed(model: ShotModel, wall: float) -> None:
     puck = np.array([-0.5, 0.1, 0.0, 0.0, 0.0])

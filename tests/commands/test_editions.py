@@ -187,6 +187,7 @@ def test_what_reads_runs_keeps_editions_apart(hockey: Hockey) -> None:
     assert Path("site/task-hit.html").exists() and Path("site/task-7dof-hit.html").exists()
 
 
+@pytest.mark.long
 def test_what_shows_runs_shows_the_scene_of_their_edition(hockey: Hockey) -> None:
     short = "--agent hold --episodes 1 --jobs 1 --quiet"
     hockey(f"evaluate --env hit_single {short} --official-dataset --out run")

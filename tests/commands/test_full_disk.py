@@ -39,6 +39,7 @@ def stopped(hockey: Hockey, line: str, size: int) -> str:
     return err
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("size", [2500, 20_000])
 def test_a_run(hockey: Hockey, size: int) -> None:
     line = "evaluate --env 3dof-defend --agent hold --episodes 3 --jobs 1 --quiet"
@@ -61,6 +62,7 @@ def test_the_official_files(hockey: Hockey) -> None:
         )
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("size", [1900, 9000])
 def test_a_match(hockey: Hockey, size: int) -> None:
     line = "match hold hold --steps 400 --jobs 1 --quiet"

@@ -27,6 +27,7 @@ def marked(tmp_path: Path) -> tuple[str, Path]:
     return make_submission(tmp_path, building=SAYS_ITS_PYTHON.format(mark=str(mark))), mark
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("where", ["", "away:"])
 def test_a_submission_in_a_match_has_a_python_of_its_own(
     hockey: Hockey, marked: tuple[str, Path], tmp_path: Path, where: str

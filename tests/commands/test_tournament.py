@@ -80,6 +80,7 @@ def test_entries_of_both_kinds_and_standings_of_every_kind(
     assert "standings after 2 of 2 games" in hockey("tournament --show --out run")[1]
 
 
+@pytest.mark.long
 def test_extended_on_the_command_line(hockey: Hockey) -> None:
     assert hockey(f"tournament hold b=hold {SHORT} --out run --quiet")[0] == 0
     before = Path("run/journal.jsonl").read_text()

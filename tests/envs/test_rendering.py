@@ -1,6 +1,11 @@
 """`render()` of every interface: pictures that show what happens, at the length of the episode, also of copies."""
 
 import copy
+import re
+import subprocess
+import sys
+import urllib.error
+import urllib.request
 import warnings
 from pathlib import Path
 
@@ -84,6 +89,38 @@ def test_a_copy_renders_apart_from_its_original() -> None:
     other.close()
     np.testing.assert_array_equal(env.render(), before)
     env.close()
+
+
+def test_several_are_live_at_once_and_one_may_be_left_open(capfd: pytest.CaptureFixture[str]) -> None:
+    def live() -> gymnasium.Env:
+        env = airhockey.envs.gymnasium.AirHockeyEnv("3dof-hit", render_mode="human")
+        env.reset(seed=0)
+        return env
+
+    first, second = live(), live()
+    addresses = re.findall(r"watch at (\S+)", capfd.readouterr().err)
+    assert len(set(addresses)) == 2
+    first.close()
+    with urllib.request.urlopen(addresses[1]) as page:
+        assert page.status == 200
+    with pytest.raises(urllib.error.URLError):
+        urllib.request.urlopen(addresses[0])
+    third = live()
+    for env in (second, third):
+        env.step(standing_still(np.array([-1.15570, 1.30024, 1.44280]), 3))
+    del second, env  # and nobody closes it
+    third.close()
+
+
+def test_a_script_may_end_while_one_is_live() -> None:
+    script = """
+from airhockey.envs.gymnasium import AirHockeyEnv
+env = AirHockeyEnv("3dof-hit", render_mode="human")
+env.reset(seed=0)
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert "watch at" in done.stderr
 
 
 def test_pettingzoos_check_renders() -> None:

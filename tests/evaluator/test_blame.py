@@ -52,6 +52,7 @@ def test_it_is_no_forfeit_either(light: str, tmp_path: Path) -> None:
     assert read_journal(tmp_path / "match", GameRecord).records == []
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "line",
     [

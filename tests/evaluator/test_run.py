@@ -108,6 +108,7 @@ def test_another_run_is_not_taken_up(options: Options, one_job: Path, monkeypatc
         resume(one_job)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     ("behaviour", "reason"),
     [

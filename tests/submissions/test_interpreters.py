@@ -89,6 +89,7 @@ def build_agent(env_info, **kwargs):
 """
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("env_name", ["3dof-hit", "7dof-hit"])
 def test_it_is_told_there_what_it_is_told_here(bare: str, tmp_path: Path, env_name: str) -> None:
     pytest.importorskip("mushroom_rl")

@@ -31,6 +31,7 @@ CHILD = THREAD.replace("import threading", "import multiprocessing").replace(
 )
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(("building", "pace"), [(THREAD, 1.0), (CHILD, 1.0), ("pass", 0.0), ("import threading", 0.0)])
 def test_one_that_thinks_between_calls_is_noticed(tmp_path: Path, building: str, pace: float) -> None:
     agent = make_submission(tmp_path, building=building.strip())

@@ -1,7 +1,6 @@
 """A zoo of entries in the ways that participants wrote them: each plays, at home and away, or is refused for the right cause."""
 
 import importlib.util
-import os
 import shutil
 import subprocess
 import sys
@@ -134,10 +133,9 @@ def test_all_play_at_home_and_away(here: dict[str, Any]) -> None:
 
 
 SANDBOXED = [name for name in PLAYS if name != "threaded_planner"]
-if "LONG" not in os.environ:
-    SANDBOXED = ["reads_command_line", *SANDBOXED[::5]]  # `make compatibility` plays them all
 
 
+@pytest.mark.sampled(8)
 @pytest.mark.parametrize("name", SANDBOXED)
 def test_one_plays_in_the_sandbox_as_here(zoo: Path, here: dict[str, Any], sandbox: None, name: str) -> None:
     np.testing.assert_array_equal(list(play(zoo / name, tasks(zoo / name)[0], "sandbox")), here[name])
@@ -152,6 +150,7 @@ def test_one_plays_away_in_a_process_and_in_the_sandbox(
         np.testing.assert_array_equal(list(play(zoo / name, "tournament", mode, side=2)), here[f"{name} away"])
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", REFUSED)
 def test_one_is_refused_for_the_right_cause(zoo: Path, sandbox: None, name: str) -> None:
     with pytest.raises(AirHockeyError, match=REFUSED[name]):
@@ -163,6 +162,7 @@ def test_one_of_the_planar_robot_says_so_elsewhere(zoo: Path, sandbox: None) -> 
         list(play(zoo / "planar_only", "7dof-hit", "sandbox"))
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", ["helper_packages", "module_of_the_root", "relative_files", "own_copy_with_more"])
 def test_a_checkout_is_found_from_its_agents_folder_too(zoo: Path, name: str) -> None:
     entry = zoo / name

@@ -1,13 +1,12 @@
 """`render()` of the Gymnasium, PettingZoo and MushroomRL interfaces: the present moment as a picture, or live for a person."""
 
-import sys
 import time
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.envs.rendering.display import has_display, needs_studio
+from airhockey.envs.rendering.display import has_display
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.errors import ConfigurationError
 
@@ -17,7 +16,6 @@ if TYPE_CHECKING:
 MODES = ("human", "rgb_array")
 """Live, at the pace of a real robot; or an array, as fast as it can be drawn."""
 FRAMES_PER_SECOND = round(1.0 / CONTROL_PERIOD)
-_HOST = "127.0.0.1"
 
 
 class Rendered:
@@ -98,14 +96,14 @@ class Renderer:
         if self.mode is None:
             return None
         name, edition, mode, width, height = self._made_with
+        if mode == "human":
+            self._show(data)
+            return None
         if self._scene_view is None:
             from airhockey.envs.rendering.scene_view import SceneView
 
             self._scene_view = SceneView(name, edition)
         self._scene_view.copy_state(data)
-        if mode == "human":
-            self._show()
-            return None
         if self._camera is None:
             from airhockey.envs.rendering.camera import Camera
 
@@ -120,25 +118,23 @@ class Renderer:
             self._live.close()
         self._scene_view = self._camera = self._live = None
 
-    def _show(self) -> None:
+    def _show(self, data: Any) -> None:
         """In a window, or where there is no display on a page of this machine; then wait for the pace of a real robot."""
         if self._live is None:
             self._live = self._open()
             self._next = time.monotonic()
-        self._live.sync()
+        if not self._live.is_running():  # the person has closed it
+            return
+        self._live.show(data)
         self._next = max(self._next + CONTROL_PERIOD, time.monotonic() - CONTROL_PERIOD)
         time.sleep(max(0.0, self._next - time.monotonic()))
 
     def _open(self) -> Any:
-        view = self._scene_view
+        name, edition = self._made_with[:2]
         if has_display():
-            with needs_studio():
-                from mujoco.studio import launch_native, viewer_protocol
-            handle = launch_native.launch(viewer_protocol.ViewerConfig(title="airhockey"))
-            handle.set_model(view.model, data=view.data)
-            return handle
-        with needs_studio():
-            from airhockey.envs.rendering.web import launch
-        handle, address = launch("airhockey", (view.model, view.data), _HOST, 0)
-        print(f"watch at {address}", file=sys.stderr)
-        return handle
+            from airhockey.envs.rendering.live_window import LiveWindow
+
+            return LiveWindow(name, edition)
+        from airhockey.envs.rendering.live_page import LivePage
+
+        return LivePage(name, edition)

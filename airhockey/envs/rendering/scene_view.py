@@ -61,7 +61,11 @@ class SceneView:
 
     def copy_state(self, source: Any) -> None:
         """Show what a simulation of the same scene shows: its `MjData`, drawn arms or not."""
-        self.data.qpos[:], self.data.qvel[:], self.data.time = source.qpos, source.qvel, source.time
+        self.place(source.qpos, source.qvel, source.time)
+
+    def place(self, position: Array, velocity: Array, time: float) -> None:
+        """Show a moment by MuJoCo's `qpos` and `qvel`, at a time in [s]."""
+        self.data.qpos[:], self.data.qvel[:], self.data.time = position, velocity, time
         mujoco.mj_forward(self.model, self.data)
 
     def tip_position(self, r: int, joint_position: Array) -> Array:

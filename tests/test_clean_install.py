@@ -18,7 +18,7 @@ ROOT = Path(__file__).parent.parent
 STAND_IN = ROOT / "tests" / "support" / "official_stand_in.py"
 RECORDINGS = ROOT / "tests" / "data" / "recordings"
 LARGEST = 500  # [MB] of the core, with everything that it brings
-OFFICIAL_NUMPY = "1.24.4"
+OFFICIAL_NUMPY, OFFICIAL_MUSHROOM = "1.24.4", "1.10.2"
 asked_for = pytest.mark.skipif(
     "CLEAN_INSTALL" not in os.environ or sys.version_info >= (3, 12),
     reason=f"installs from a registry: set CLEAN_INSTALL=1; NumPy {OFFICIAL_NUMPY} has no wheel for Python 3.12",
@@ -75,3 +75,33 @@ def test_the_evaluator_plays_there(clean: Path, tmp_path: Path) -> None:
     done = subprocess.run([clean / "hockey", *arguments], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert f"numpy {OFFICIAL_NUMPY}" in done.stdout
+
+
+@pytest.fixture(scope="module")
+def with_mushroom(clean: Path) -> Path:
+    """The same with the official MushroomRL; without its dependencies, because it asks for gigabytes of a torch for GPUs."""
+    pip = [clean / "python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    imported = ["torch", "opencv-python-headless<4.10", "pygame", "scikit-learn", "tqdm", "scipy", "matplotlib"]
+    subprocess.run([*pip, f"numpy=={OFFICIAL_NUMPY}", *imported], check=True)
+    subprocess.run([*pip, "--no-deps", f"mushroom-rl=={OFFICIAL_MUSHROOM}"], check=True)
+    return clean
+
+
+CORE = """
+import numpy, mushroom_rl
+from mushroom_rl.core import Core, Environment, MDPInfo
+from airhockey.agents.build import build_agent
+from airhockey.envs import AirHockeyChallengeWrapper
+
+env = AirHockeyChallengeWrapper("7dof-defend")
+assert isinstance(env, Environment) and isinstance(env.info, MDPInfo)
+dataset = Core(build_agent("thesis", env.env_info), env).evaluate(n_steps=20, quiet=True)
+print(f"{len(dataset)} steps with NumPy {numpy.__version__} and MushroomRL {mushroom_rl.__version__}")
+"""
+
+
+@asked_for
+def test_ours_play_in_the_loop_of_the_official_mushroom(with_mushroom: Path, tmp_path: Path) -> None:
+    done = subprocess.run([with_mushroom / "python", "-c", CORE], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert f"20 steps with NumPy {OFFICIAL_NUMPY} and MushroomRL {OFFICIAL_MUSHROOM}" in done.stdout

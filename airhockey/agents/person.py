@@ -13,6 +13,7 @@ from airhockey.agents.control.workspace import Workspace
 from airhockey.agents.estimation.watch import TableWatch
 from airhockey.agents.table import HALF_LENGTH, HALF_WIDTH, HOME, to_table
 from airhockey.agents.thesis.polar import limited_step, stoppable_step
+from airhockey.envs.copying import NotCopyable
 
 FASTEST, ACCELERATION = 0.036, 14.0
 """Longest step of the mallet in a control step, in [m], and how fast it can brake, in [m]/[s²]."""
@@ -34,7 +35,7 @@ class Seen(NamedTuple):
     target: Array
 
 
-class Hand:
+class Hand(NotCopyable):
     """What a page and the player share: where the person points, and what there is to see."""
 
     def __init__(self) -> None:

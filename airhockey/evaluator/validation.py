@@ -10,7 +10,7 @@ from airhockey.agents.packaging.checkout import PACKAGE, find_checkout
 from airhockey.agents.packaging.edition import edition_of_entry
 from airhockey.agents.packaging.metadata import METADATA, Metadata, interpolation_order, read_metadata
 from airhockey.agents.packaging.packing import contents
-from airhockey.agents.packaging.unfetched import pointers
+from airhockey.agents.packaging.unfetched import FETCH, what_is_missing
 from airhockey.agents.submission import CONFIG, submission_config
 from airhockey.compat.entries import notes
 from airhockey.envs.editions import DEFAULT, Edition, edition
@@ -75,7 +75,7 @@ def validate(
             problems.append(Problem(name, str(error), remedy))
     rules = edition(year or edition_of_entry(path) or DEFAULT)
     told = list(notes(path))
-    unfetched = pointers(checkout.root)
+    unfetched = what_is_missing(checkout.root)
     if not any(problem.where == CONFIG for problem in problems):
         tasks, unknown_tasks = _tasks(metadata, config, rules)
         problems += unknown_tasks
@@ -97,21 +97,15 @@ def validate(
             else:
                 problems.append(outcome)
         if unfetched and len(trials) < len(sides):
-            problems.insert(before, _not_fetched(unfetched))
+            problems.insert(before, Problem("the checkout", unfetched, FETCH))
         elif unfetched:
-            told.append(_not_fetched(unfetched).what)
+            told.append(unfetched)
     if any(trial.thinking > BUSY for trial in trials):
         told.append(
             "it thinks between its steps, in threads or processes: evaluations pace them as on the robot (--real-time)"
         )
     conclusion = concluded(name, trials, problems)
     return Verdict(name, tuple(problems), tuple(trials), left_out, tuple(told), conclusion, rules.edition)
-
-
-def _not_fetched(files: list[str]) -> Problem:
-    more = f" and {len(files) - 1} more" if len(files) > 1 else ""
-    what = f"{files[0]!r}{more} is not there: git lfs has left a pointer in its place"
-    return Problem("the checkout", what, "git lfs pull, in the checkout")
 
 
 def concluded(name: str, trials: list[Trial], problems: list[Problem]) -> str:

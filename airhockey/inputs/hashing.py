@@ -1,7 +1,7 @@
 """Inputs known by their content: SHA-256 of a file, or of everything in a folder that decides what it does.
 
-Two folders have the same hash when they hold the same files under the same names, wherever they lie. What tools leave in a
-folder (compiled modules, version control, the results of runs) does not count.
+Two folders have the same hash when they hold the same files under the same names, wherever they lie. Folders that tools leave in
+it (compiled modules, version control, the results of runs) do not count; a sandbox does not show them either.
 """
 
 import hashlib
@@ -16,14 +16,14 @@ from airhockey.inputs.names import shown
 TOOLS = frozenset(
     (
         "__pycache__", "build", "dist", "runs", "node_modules", ".git", ".hg", ".venv", ".mypy_cache", ".pytest_cache",
-        ".ruff_cache", ".ipynb_checkpoints", ".idea", ".vscode", ".DS_Store",
+        ".ruff_cache", ".ipynb_checkpoints", ".idea", ".vscode",
     )
 )  # fmt: skip
-"""What tools make, and no agent reads."""
+"""Folders that tools make, and no agent reads."""
 LARGEST, MOST_FILES = 8 << 30, 100_000
 """What a folder may hold: [bytes] and files. A file may say that it is larger than any disk."""
-RESULTS = ("run.json", "match.json", "tournament.json", "train.json")
-"""A folder with one of these is a run's."""
+RESULTS = ("run.json", "match.json", "tournament.json")
+"""A folder with one of these is a run's; that of a training is not among them: an agent may play with what was learned."""
 
 
 def content_hash(path: str | os.PathLike[str]) -> str:
@@ -61,17 +61,22 @@ def files_of(folder: Path) -> Iterator[Path]:
         yield file
 
 
+def is_left_over(folder: str, name: str) -> bool:
+    """Whether a folder in an agent's is one that tools or runs left there."""
+    place = os.path.join(folder, name)
+    return (
+        name in TOOLS or name.endswith(".egg-info") or any(os.path.lexists(os.path.join(place, one)) for one in RESULTS)
+    )
+
+
 def _all_files(folder: Path) -> Iterator[Path]:
     with os.scandir(folder) as entries:
         there = sorted(entries, key=lambda entry: entry.name)
-    if any(entry.name in RESULTS for entry in there):
-        return
     for entry in there:
-        if entry.name in TOOLS or entry.name.endswith((".pyo", ".egg-info")):
-            continue
         kind = entry.stat(follow_symlinks=False).st_mode
         if stat.S_ISDIR(kind):
-            yield from _all_files(Path(entry.path))
+            if not is_left_over(os.fspath(folder), entry.name):
+                yield from _all_files(Path(entry.path))
         elif stat.S_ISREG(kind):
             yield Path(entry.path)
         else:

@@ -37,6 +37,11 @@ def markup(text: object, most: int = MAX_SHOWN) -> str:
     return escape(shown(text, most))
 
 
+def is_text(text: str) -> bool:
+    """Whether a file in UTF-8 can hold it: it has no half letters, such as the bytes of a file name that is no UTF-8."""
+    return not any("\ud800" <= letter <= "\udfff" for letter in text)
+
+
 def is_visible(letter: str) -> bool:
     """Whether a letter shows as itself and does nothing to its neighbours."""
     return letter == " " or unicodedata.category(letter) not in _HIDDEN

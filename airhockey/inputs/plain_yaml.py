@@ -14,6 +14,7 @@ from typing import Any
 import yaml
 
 from airhockey.errors import ConfigurationError
+from airhockey.inputs.names import is_text
 
 MAX_BYTES = 256 << 10
 """No configuration is larger, in bytes."""
@@ -90,6 +91,10 @@ class _Loader(yaml.SafeLoader):
         self._depth -= 1
         if node.tag not in _KINDS:
             raise _refused(node, f"the tag {node.tag.removeprefix(_PLAIN)!r} is not allowed; write plain values")
+        if isinstance(node, yaml.ScalarNode) and not is_text(node.value):
+            raise _refused(
+                node, "a text with half a letter in it (a surrogate): no file can hold it; write the whole letter"
+            )
         return node
 
     def construct_mapping(self, node: Any, deep: bool = False) -> dict[Hashable, Any]:

@@ -209,6 +209,80 @@ def _dataset(place: Path) -> Reader:
     return _into(place / "dataset.pkl", read_dataset), good
 
 
+def _trained(place: Path, which: str) -> Reader:
+    """One file of a learned player's folder; built and played a step with each."""
+    import shutil
+
+    from airhockey import agents, envs
+    from airhockey.agents.learned.player import LearnedPlayer
+
+    good = Path(agents.__file__).parent / "learned" / "trained" / "7dof-defend"
+    folder, env = Path(shutil.copytree(good, place / "player")), envs.make("7dof-defend")
+    observation = env.reset(seed=0)
+
+    def read(_: Path) -> None:
+        LearnedPlayer.load(folder, env.env_info).draw_action(observation)
+
+    read(folder)  # what is compiled first takes its time
+    return _into(folder / which, read), (good / which).read_bytes()
+
+
+def _films(place: Path) -> Reader:
+    """The film of a game, as a page shows it and as a match that goes on believes it."""
+    game = place / "game"
+    command = [str(Path(sys.executable).with_name("hockey")), "match", "hold", "hold", "--steps", "120", "--quiet"]
+    subprocess.run([*command, "--out", str(game)], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    film = next((game / "films").glob("*.h5"))
+    from airhockey.evaluator.match import resume_match
+    from airhockey.reporting.document import report
+
+    def read(_: Path) -> None:
+        report([game], lambda *_: None)
+        resume_match(game).close()
+
+    return _into(film, read), film.read_bytes()
+
+
+def _logs(place: Path) -> Reader:
+    """The log of a training, as it is drawn."""
+    from airhockey.learning.sac.plots import LOG, plot_training
+
+    run = place / "run"
+    run.mkdir()
+    lines = [f"{100 * k},{k},{-3.5 + k},{0.1 * k:.3g},{0.01},{12.5}" for k in range(1, 9)]
+    good = "\n".join(["steps,episodes,mean_return,success,violations,seconds", *lines]) + "\n"
+    return _into(run / LOG, lambda _: plot_training(run, place)), good.encode()
+
+
+def _training(place: Path, which: str) -> Reader:
+    """One file of a training's folder, of which the others are as they should be."""
+    run = place / "run"
+    command = [
+        str(Path(sys.executable).with_name("hockey")),
+        "train",
+        "pgpe",
+        "--task",
+        "hit",
+        "--robot",
+        "3dof",
+        "--quiet",
+    ]
+    settings = ["--iterations", "2", "--candidates", "2", "--episodes", "1", "--jobs", "1", "--out", str(run)]
+    subprocess.run([*command, *settings], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    from airhockey.learning.pgpe import training
+
+    def read(_: Path) -> None:
+        training.train(training.resume(run, {}))
+
+    return _into(run / which, read), (run / which).read_bytes()
+
+
+def _weights(place: Path) -> Reader:
+    from airhockey.learning.envs.game import WEIGHTS, read_weights
+
+    return _into(place / "weights.yaml", read_weights), WEIGHTS.read_bytes()
+
+
 READERS: dict[str, Callable[[Path], Reader]] = {
     "disturbance profiles": _profiles,
     "parameter files": _parameters,
@@ -219,6 +293,13 @@ READERS: dict[str, Callable[[Path], Reader]] = {
     "journals": lambda place: _run(place, "journal.jsonl"),
     "trajectories": lambda place: _run(place, "trajectories.h5"),
     "official datasets": _dataset,
+    "films of games": _films,
+    "networks of learned players": lambda place: _trained(place, "network.npz"),
+    "descriptions of learned players": lambda place: _trained(place, "policy.yaml"),
+    "logs of trainings": _logs,
+    "weights of rewards": _weights,
+    "manifests of trainings": lambda place: _training(place, "train.json"),
+    "journals of trainings": lambda place: _training(place, "journal.jsonl"),
 }
 
 

@@ -31,6 +31,7 @@ sys.modules["{name}"] = _real
 sys.path[:] = _paths
 """
 MATCH = ("match", "hold", "hold", "--steps", "60", "--quiet", "--out")
+HOLD = ("evaluate", "--env", "3dof-hit", "--agent", "hold", "--episodes", "1", "--jobs", "1", "--quiet", "--out")
 COMMANDS: dict[str, tuple[tuple[str, ...], ...]] = {
     "evaluate": (
         (
@@ -75,11 +76,37 @@ COMMANDS: dict[str, tuple[tuple[str, ...], ...]] = {
         ),
         ("plot", "learned"),
     ),
+    "failures": ((*HOLD, "run"), ("failures", "run")),
+    "identify": ((*HOLD, "run"), ("identify", "run", "-o", "found.yaml")),
+    "doctor": (("doctor",), ("--help",), ("--version",)),
+    "train ppo": (
+        (
+            *(
+                "train",
+                "ppo",
+                "--task",
+                "3dof-hit",
+                "--steps",
+                "300",
+                "--envs",
+                "2",
+                "--rollout",
+                "64",
+                "--batch",
+                "64",
+            ),
+            *("--episodes", "1", "--threads", "1", "--quiet", "--out", "policy"),
+        ),
+        ("evaluate", "--env", "3dof-hit", "--agent", "policy", "--episodes", "1", "--quiet", "--out", "run"),
+        ("plot", "policy"),
+    ),
+    "reproduce": (("reproduce", "thesis", "--quick", "--table", "5.1", "--jobs", "1", "--quiet", "--out", "page"),),
     "train sac": (
         ("train", "sac", "--task", "defend", "--robot", "3dof", "--steps", "60", "--quiet", "--out", "policy"),
     ),
 }
 SERVERS = {
+    "play": ("play", "hold", "--no-browser"),
     "watch": ("watch", "hold", "--env", "3dof-hit", "--no-browser"),
     "serve-agent": ("serve-agent", ".", "--port", "0"),
     "replay": ("replay", "game", "--no-browser"),

@@ -884,14 +884,15 @@ def watch_files_of_the_host() -> object:
 
 @attempt
 def lock_files_that_others_need() -> object:
-    """A lock on software that is shared with the host would stop whoever else asks for it."""
-    folder = Path(sys.prefix)
+    """A run's folder is locked while it is written: who could lock it would stop the run."""
     held = []
-    for path in (folder, folder / "pyvenv.cfg"):
-        with path.open() if path.is_file() else os.fdopen(os.open(path, os.O_RDONLY)) as stream:
-            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            held.append(str(path))
-    return None
+    for path in (TOLD["opponent"], TOLD["secret"], TOLD["repository"] + "/pyproject.toml"):
+        try:
+            fcntl.flock(os.open(path, os.O_RDONLY), fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            continue
+        held.append(path)
+    return held
 
 
 @attempt
@@ -1002,6 +1003,163 @@ def keep_the_first_process_busy() -> object:
     return f"{zombies} zombies" if zombies > TOLD["processes"] else None
 
 
+@attempt
+def make_namespaces_by_clone() -> object:
+    """The older call, with each flag, alone and with others, and bits above those that the kernel reads."""
+    number, made = 56 if IS_X86 else 220, []
+    for flag in (CLONE_NEWUSER, CLONE_NEWNS, CLONE_NEWNET, 0x20000000, 0x08000000, 0x04000000, 0x02000000):
+        for more in (0, CLONE_NEWUSER, 0x00010000, 1 << 32):
+            pid = libc.syscall(*map(ctypes.c_long, (number, flag | more | signal.SIGCHLD, 0, 0, 0, 0)))
+            if pid == 0:
+                os._exit(0)
+            if pid > 0:
+                os.waitpid(pid, 0)
+                made.append(hex(flag | more))
+    return made
+
+
+@attempt
+def make_namespaces_by_clone3() -> object:
+    made = []
+    for flag in (CLONE_NEWNS, CLONE_NEWNET, 0x80, 0x02000000, 0x200000000):  # of time, of cgroups, into a cgroup
+        try:
+            pid = call(
+                "clone3", ctypes.create_string_buffer(struct.pack("11Q", flag, *[0] * 3, signal.SIGCHLD, *[0] * 6)), 88
+            )
+        except OSError:
+            continue
+        if pid == 0:
+            os._exit(0)
+        os.waitpid(pid, 0)
+        made.append(hex(flag))
+    return made
+
+
+@attempt
+def write_memory_of_others_by_vectors() -> object:
+    number, there = (311 if IS_X86 else 271), ctypes.create_string_buffer(b"x" * 8)
+    vector = struct.pack("PP", ctypes.addressof(there), 8)
+    for pid in (os.getpid(), os.getppid(), 1):
+        if libc.syscall(ctypes.c_long(number), ctypes.c_long(pid), vector, 1, vector, 1, 0) >= 0:
+            return f"into {pid}"
+    return None
+
+
+@attempt
+def look_at_process_1_in_every_way() -> object:
+    got = []
+    for name in ("cwd", "exe", "root", "environ", "mem", "pagemap", "map_files", "personality", "io", "timers"):
+        try:
+            found = os.readlink(f"/proc/1/{name}") if name in ("cwd", "exe", "root") else ""
+            found = found or (os.listdir if name == "map_files" else lambda path: Path(path).read_bytes()[:80])(
+                f"/proc/1/{name}"
+            )
+        except OSError:
+            continue
+        if (
+            TOLD["token"] in str(found)
+            or str(Path(TOLD["secret"]).parent) in str(found)
+            or name in ("mem", "pagemap", "map_files")
+        ):
+            got.append(f"{name}: {found!r}")
+    return got
+
+
+@attempt
+def take_another_personality() -> object:
+    """Memory that can be written and run, or laid out as everybody knows."""
+    taken = []
+    for persona in (0x0400000, 0x0040000, 0x0100000, 0x4000000, 0x0200000):
+        if libc.personality(ctypes.c_ulong(persona)) >= 0 and libc.personality(ctypes.c_ulong(0xFFFFFFFF)) & persona:
+            taken.append(hex(persona))
+    return taken
+
+
+@attempt
+def change_how_a_terminal_speaks() -> object:
+    """A line discipline is code of the kernel's, loaded for whoever asks."""
+    fd = os.open("/dev/ptmx", os.O_RDWR | os.O_NOCTTY)
+    got = []
+    for discipline in (1, 2, 3, 5, 13, 15, 17, 20, 21, 23, 25, 27, 29):
+        try:
+            fcntl.ioctl(fd, 0x5423, struct.pack("i", discipline))
+            got.append(discipline)
+        except OSError:
+            continue
+    return got
+
+
+@attempt
+def speak_to_the_kernel_by_netlink() -> object:
+    for kind in range(23):
+        try:
+            return socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, kind).getsockname()
+        except OSError:
+            continue
+    return None
+
+
+@attempt
+def change_the_network_by_ioctl() -> object:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as one:
+        for request in (0x8914, 0x8916, 0x8946, 0x89A0, 0x89F0):  # flags, addresses, ethtool, bridges
+            try:
+                return hex(request), fcntl.ioctl(one, request, b"lo".ljust(40, b"\0"))
+            except OSError:
+                continue
+    return None
+
+
+@attempt
+def become_other_users_and_groups() -> object:
+    became = []
+    for function, wanted in (
+        (os.setuid, 0),
+        (os.setgid, 0),
+        (os.setuid, 1),
+        (os.setgid, 1),
+        (os.seteuid, 0),
+        (os.setegid, 0),
+    ):
+        try:
+            function(wanted)
+            became.append(f"{function.__name__} {wanted}")
+        except OSError:
+            continue
+    try:
+        os.setgroups([0])
+        became.append("group of root")
+    except OSError:
+        pass
+    return became
+
+
+@attempt
+def talk_to_the_host_by_files_in_shared_memory() -> object:
+    """What one writes to /dev/shm or /tmp must be its own."""
+    return [
+        path
+        for path in os.listdir("/dev/shm") + os.listdir("/tmp")
+        if path.startswith(("airhockey-attack", "sem.", "psm_"))
+    ]
+
+
+@attempt
+def make_kernel_interfaces_that_are_new() -> object:
+    """Those that came lately, and have no use for an agent: landlock takes rights away only, and may be."""
+    seen = []
+    for name, number in {
+        "statmount": 457,
+        "listmount": 458,
+        "open_tree_attr": 467,
+        "quotactl_fd": 443,
+        "set_mempolicy_home_node": 450,
+    }.items():
+        NUMBERS[name] = number
+        seen.append(was_allowed(name, 0, 0, 0, 0))
+    return [one for one in seen if one]
+
+
 # ---- resources; each gets as much as it can and says how much that was
 
 
@@ -1044,14 +1202,92 @@ def take_memory_by_sockets() -> object:
             os.write(writer, struct.pack("q", got))
             time.sleep(20)
             os._exit(0)
-    os.set_blocking(reader, False)
-    total, end = 0, time.monotonic() + 5.0
-    while time.monotonic() < end:
+    return _too_much(_told_by(reader, 5.0), int(1.5 * TOLD["memory"]))
+
+
+@attempt
+def take_memory_by_tcp() -> object:
+    """What waits in connections to itself is the kernel's memory, and all of the machine shares one measure of it."""
+    reader, writer = os.pipe()
+    for _ in range(TOLD["processes"]):
         try:
-            total += struct.unpack("q", os.read(reader, 8))[0]
-        except BlockingIOError:
-            time.sleep(0.05)
-    return _too_much(total, int(1.5 * TOLD["memory"]))
+            if os.fork():
+                continue
+        except OSError:
+            break
+        got, chunk = 0, bytes(65536)
+        try:
+            with socket.create_server(("127.0.0.1", 0), backlog=64) as server:
+                while True:
+                    pair = (socket.create_connection(server.getsockname(), 0.5), server.accept()[0])
+                    _kept.append(pair)
+                    for one in pair:
+                        one.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 64 * MIB)
+                        one.setblocking(False)
+                        try:
+                            while True:
+                                got += one.send(chunk)
+                        except BlockingIOError:
+                            continue
+        except OSError:
+            pass
+        os.write(writer, struct.pack("q", got))
+        time.sleep(20)
+        os._exit(0)
+    return _too_much(_told_by(reader, 8.0), int(1.5 * TOLD["memory"]))
+
+
+@attempt
+def take_memory_by_extended_attributes() -> object:
+    """Attributes of files in memory cost no space where the files lie."""
+    got = 0
+    for number in range(20_000):
+        path = Path(tempfile.gettempdir(), f"x{number}")
+        try:
+            path.touch()
+            for k in range(16):
+                os.setxattr(path, f"user.{k}", bytes(60_000))
+                got += 60_000
+        except OSError:
+            break
+    return _too_much(got, TOLD["memory"])
+
+
+@attempt
+def make_links_and_folders_without_end() -> object:
+    made = 0
+    try:
+        while made < 400_000:
+            os.symlink("x" * 4000, f"{tempfile.gettempdir()}/l{made}")
+            os.mkdir(f"/dev/shm/d{made}")
+            made += 2
+    except OSError:
+        pass
+    return f"{made} links and folders" if made >= 400_000 else None
+
+
+@attempt
+def take_memory_by_timers_and_signals() -> object:
+    """Each waits in the kernel."""
+    made, timer = 0, ctypes.c_int()
+    number = 222 if IS_X86 else 107
+    while made < 2_000_000 and libc.syscall(ctypes.c_long(number), 1, None, ctypes.byref(timer)) == 0:
+        made += 1
+    return f"{made} timers" if made >= 2_000_000 else None
+
+
+@attempt
+def take_memory_by_watches_on_files() -> object:
+    made = 0
+    for _ in range(1000):
+        fd = libc.inotify_init()
+        if fd < 0:
+            break
+        for path in (*Path("/usr/lib").iterdir(), *Path("/usr/bin").iterdir()):
+            if libc.inotify_add_watch(fd, os.fsencode(path), 2) < 0:
+                break
+            made += 1
+    return _too_much(made * 1024, TOLD["memory"])
 
 
 @attempt
@@ -1083,6 +1319,18 @@ def _too_much(got: int, allowed: int) -> str | None:
 
 
 _kept: list[object] = []
+
+
+def _told_by(reader: int, seconds: float) -> int:
+    """The sum of what children write into a pipe within so long."""
+    os.set_blocking(reader, False)
+    total, end = 0, time.monotonic() + seconds
+    while time.monotonic() < end:
+        try:
+            total += struct.unpack("q", os.read(reader, 8))[0]
+        except BlockingIOError:
+            time.sleep(0.05)
+    return total
 
 
 @attempt

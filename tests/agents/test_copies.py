@@ -15,8 +15,13 @@ import pytest
 from airhockey import envs
 from airhockey.agents import AGENTS, build_agent
 from airhockey.agents.hold import HoldAgent
+from airhockey.agents.person import Hand
+from airhockey.envs.vector.threads import Threads
 from airhockey.evaluator import Options, begin
 from airhockey.evaluator.isolation.build import build_agent as build_handle
+from airhockey.evaluator.play.rollout import Rollout
+from airhockey.evaluator.play.seat import Care, Seat
+from airhockey.evaluator.play.watchdog import Watch
 
 WAYS: dict[str, Callable[[Any], Any]] = {
     "agent.copy": lambda agent: agent.copy(),
@@ -92,8 +97,10 @@ def test_what_cannot_be_copied_says_so(submission: Callable[..., str], tmp_path:
     env = envs.make("3dof-hit")
     isolated = build_handle(submission(), env, mode="process")
     folder = begin(Options(environments=("3dof-hit",), agent="hold", episodes=1), tmp_path / "run")
+    seat = Seat(isolated, env.formats[0], Care())
+    holders = (seat, Rollout(env, [seat], 0), Watch(), Threads(1), Hand())
     try:
-        for held in (isolated, isolated._memory, folder):
+        for held in (isolated, isolated._memory, folder, *holders):
             for how in (copy.copy, copy.deepcopy, pickle.dumps, cloudpickle.dumps):
                 with pytest.raises(TypeError, match=f"{type(held).__name__} cannot be copied or pickled"):
                     how(held)

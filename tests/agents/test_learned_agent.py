@@ -1,5 +1,8 @@
 """`learned`: its networks come with cards, defend better than standing still, and others play what they were not trained for."""
 
+import shutil
+from pathlib import Path
+
 import numpy as np
 import pytest
 import yaml
@@ -7,8 +10,9 @@ import yaml
 from airhockey import envs
 from airhockey.agents import build_agent
 from airhockey.agents.learned.agent import FOLDER
-from airhockey.agents.learned.player import NETWORK, LearnedPlayer
+from airhockey.agents.learned.player import NETWORK, POLICY, LearnedPlayer
 from airhockey.agents.thesis.final import FinalThesisAgent
+from airhockey.errors import ConfigurationError
 
 SEEDS = range(100, 108)
 
@@ -45,3 +49,14 @@ def test_every_network_has_its_card(folder):
     agent = build_agent("learned", envs.make(folder.name).env_info)
     assert isinstance(agent, LearnedPlayer)
     assert agent.draw_action(np.zeros(20)).shape == (2, 7)
+
+
+@pytest.mark.parametrize(
+    "line", ["repeat: 0", "horizon: 0", "repeat: -1", "horizon: .nan", "repeat: [1]", "horizon: .inf"]
+)
+def test_a_description_that_is_none_is_refused_by_name(tmp_path: Path, line: str) -> None:
+    folder = Path(shutil.copytree(FOLDER / "7dof-defend", tmp_path / "player"))
+    kept = [one for one in (folder / POLICY).read_text().splitlines() if not one.startswith(line.split(":")[0])]
+    (folder / POLICY).write_text("\n".join([*kept, line]))
+    with pytest.raises(ConfigurationError, match=POLICY):
+        LearnedPlayer.load(folder, envs.make("7dof-defend").env_info)

@@ -13,7 +13,7 @@ from command_line import Hockey
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options
 from airhockey.evaluator.evaluation import begin, evaluate, resume
-from airhockey.evaluator.match import MatchOptions, begin_match
+from airhockey.evaluator.match import MatchOptions, begin_match, resume_match
 from airhockey.evaluator.runs.inputs import hashes_of
 from airhockey.inputs.hashing import content_hash
 from submissions import make_submission
@@ -126,3 +126,27 @@ def test_results_and_reports_say_by_content_who_played(tmp_path: Path, hockey: H
         assert hockey(f"report {folder} -o {folder}.html --quiet")[0] == 0
         page = Path(f"{folder}.html").read_text()
         assert all(hashes[agent] in page for agent in shown) and str(tmp_path) not in page
+
+
+@pytest.mark.parametrize("given", ["mine", "./mine", "mine/../mine"])
+def test_an_agent_by_a_relative_path_is_known_by_its_content_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, given: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "agent_builder.py").write_text("x = 1\n")
+    begin(options(given), tmp_path / "run").close()
+    begin_match(MatchOptions(home="hold", away=given), tmp_path / "match").close()
+    (tmp_path / "mine" / "agent_builder.py").write_text("x = 2\n")
+    for again, name in ((resume, "run"), (resume_match, "match")):
+        with pytest.raises(ConfigurationError, match=r"another content of '/.*/mine'"):
+            again(tmp_path / name, {})
+
+
+def test_a_path_that_is_no_text_is_refused_before_anything_is_written(tmp_path: Path) -> None:
+    agent = os.fsdecode(os.fsencode(tmp_path) + b"/\xff\xfe")
+    os.mkdir(agent)
+    Path(agent, "agent_builder.py").write_text("x = 1\n")
+    with pytest.raises(ConfigurationError, match=r"\\udcff\\udcfe is not UTF-8 text"):
+        begin(options(agent), tmp_path / "run")
+    assert not (tmp_path / "run").exists()

@@ -1,5 +1,8 @@
 """The watch over agents' memory."""
 
+import contextlib
+import os
+import socket
 import threading
 
 import pytest
@@ -38,3 +41,15 @@ def test_an_agent_may_be_forgotten_while_the_watch_starts(monkeypatch: pytest.Mo
     assert held_up == [False]
     assert agent.looked.wait(20.0)
     memory_watch.forget(agent)
+
+
+def test_sockets_of_a_namespace_are_counted() -> None:
+    before = memory_watch.sockets_of(os.getpid())
+    with contextlib.ExitStack() as stack:
+        for family in (socket.AF_INET, socket.AF_INET, socket.AF_INET6):
+            server = stack.enter_context(socket.socket(family))
+            server.bind(("::1" if family == socket.AF_INET6 else "127.0.0.1", 0))
+            server.listen()
+            stack.enter_context(socket.create_connection(server.getsockname()[:2]))
+            stack.enter_context(server.accept()[0])
+        assert memory_watch.sockets_of(os.getpid()) >= before + 6

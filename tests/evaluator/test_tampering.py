@@ -64,6 +64,25 @@ def test_an_edited_manifest_is_refused(copy: Path, change: Callable[[Any], None]
     assert any("match.json was edited" in note for note in open_source(copy).notes)
 
 
+@pytest.mark.parametrize("versions", [None, {}, {"airhockey": "0.9"}, {"airhockey": "odd"}])
+def test_a_seal_cannot_be_taken_away(copy: Path, versions: dict[str, str] | None) -> None:
+    edit(copy / "match.json", lambda manifest: manifest["options"].update(seed=1))
+    edit(copy / "match.json", lambda manifest: manifest.pop("seal"))
+    if versions is not None:
+        edit(copy / "match.json", lambda manifest: manifest.update(versions=versions))
+    with pytest.raises(ConfigurationError, match=r"match.json' has lost its seal|began with airhockey"):
+        resume_match(copy, {})
+    assert any("match.json has lost its seal" in note for note in open_source(copy).notes)
+
+
+def test_a_manifest_older_than_seals_is_said_to_be_so(copy: Path) -> None:
+    edit(copy / "match.json", lambda manifest: manifest.pop("seal"))
+    edit(copy / "match.json", lambda manifest: manifest["versions"].update(airhockey="0.0.9"))
+    with pytest.raises(ConfigurationError, match=r"began with airhockey 0.0.9, but this is"):
+        resume_match(copy, {})
+    assert [note for note in open_source(copy).notes if "match.json was made before there were seals" in note]
+
+
 def test_a_manifest_may_be_written_otherwise_and_moved(copy: Path) -> None:
     edit(copy / "match.json", lambda manifest: manifest.update(created="yesterday"))
     resume_match(Path(shutil.move(copy, copy.with_name("elsewhere"))), {}).close()

@@ -28,13 +28,41 @@ def test_a_folder_is_its_names_and_bytes_wherever_it_lies(folder: Path, tmp_path
     before = content_hash(folder)
     moved = folder.rename(tmp_path / "elsewhere")
     assert content_hash(moved) == before
-    for name in ("__pycache__", ".git", "runs"):
+    for name in ("__pycache__", ".git", "runs", "agent.egg-info"):
         (moved / name).mkdir()
         (moved / name / "more").write_text("x")
     (moved / "result").mkdir()
     (moved / "result" / "run.json").write_text("{}")
     (moved / "result" / "journal.jsonl").write_text("{}")
     assert content_hash(moved) == before
+
+
+@pytest.mark.parametrize("name", ["build", "dist", "runs", "x.pyo", "x.egg-info", ".git", "run.json", "train.json"])
+def test_a_file_counts_whatever_it_is_called(folder: Path, name: str) -> None:
+    seen = {content_hash(folder)}
+    for content in ("1", "2"):
+        (folder / name).write_text(content)
+        seen.add(content_hash(folder))
+        (folder / "parts" / name).write_text(content)
+        if name != "run.json":  # the folder is then a run's, and is not shown to a sandbox either
+            seen.add(content_hash(folder))
+    assert len(seen) == (3 if name == "run.json" else 5)
+
+
+def test_what_was_learned_counts(folder: Path) -> None:
+    """The folder of a training is an agent, or part of one."""
+    (folder / "train.json").write_text("{}")
+    (folder / "parts" / "train.json").write_text("{}")
+    before = content_hash(folder)
+    (folder / "parts" / "weights.bin").write_bytes(bytes(99))
+    assert content_hash(folder) != before
+
+
+@pytest.mark.parametrize("name", ["build", ".venv", "__pycache__", "data"])
+def test_a_link_is_refused_whatever_it_is_called(folder: Path, name: str) -> None:
+    (folder / name).symlink_to("/usr/lib")
+    with pytest.raises(ConfigurationError, match=rf"{name}' is a link"):
+        content_hash(folder)
 
 
 def test_every_change_shows(folder: Path) -> None:

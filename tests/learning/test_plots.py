@@ -1,5 +1,7 @@
 """The pictures of a run: that they are there, show what the journal says, and say what is missing."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -11,6 +13,7 @@ from airhockey.learning.pgpe import plots, training
 from airhockey.learning.pgpe.folder import TrainingFolder
 from airhockey.learning.pgpe.records import Iteration, Outcome, Settings
 from airhockey.learning.pgpe.sweep import sweep
+from airhockey.learning.sac.plots import LOG, plot_training
 
 NAMES = ("hit.theta.0", "hit.theta.2")
 
@@ -91,3 +94,21 @@ def test_a_run_without_an_iteration_has_nothing_to_plot(run, tmp_path):
         plots.plot_run(run, tmp_path / "out")
     with pytest.raises(ConfigurationError, match=r"no train\.json"):
         plots.plot_run(tmp_path, tmp_path / "out")
+
+
+@pytest.mark.parametrize(
+    "log",
+    [
+        b"steps,mean_return,success,violations\n1,2,3,x\n",
+        b"steps,mean_return,success,violations\n1,2,3\n",
+        b"steps,mean_return,success,violations\n1,2,3,4\n1,2\n",
+        b"steps,mean_return\n1,2\n",
+        b"\xff\xfe,steps\n1,2\n",
+        b"steps,mean_return,success,violations\n",
+        b"",
+    ],
+)
+def test_a_broken_log_ends_in_a_line_that_names_it(tmp_path: Path, log: bytes) -> None:
+    (tmp_path / LOG).write_bytes(log)
+    with pytest.raises(ConfigurationError, match=LOG):
+        plot_training(tmp_path, tmp_path)

@@ -1,5 +1,6 @@
 """Training runs as a whole: the loop against a problem in closed form, and against real episodes."""
 
+import json
 import os
 import signal
 import subprocess
@@ -16,10 +17,12 @@ from airhockey.agents.thesis.parameters import thesis_parameters
 from airhockey.errors import AirHockeyError, ConfigurationError
 from airhockey.evaluator.engines.engine import InProcess
 from airhockey.evaluator.engines.processes import Processes
+from airhockey.evaluator.runs.disk import write_record
 from airhockey.evaluator.runs.journal import read_journal
+from airhockey.evaluator.runs.manifest import TRAINING, read_manifest, sealed
 from airhockey.learning.diverged import DivergedError
 from airhockey.learning.pgpe import training
-from airhockey.learning.pgpe.records import Iteration, Outcome, RolloutJob, Settings
+from airhockey.learning.pgpe.records import Iteration, Outcome, PgpeManifest, RolloutJob, Settings
 from airhockey.learning.pgpe.rollouts import Rollouts
 from airhockey.learning.pgpe.trainable import ranges, read, replaced
 
@@ -113,10 +116,34 @@ def test_a_sigma_that_explodes_stops_the_run(tmp_path):
     assert all(np.isfinite(one.mean).all() for one in read_journal(tmp_path, Iteration).records)
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda line: line["theta"][0].pop(),
+        lambda line: line["theta"].pop(),
+        lambda line: line["returns"].pop(),
+        lambda line: line["penalties"].append(0.0),
+        lambda line: line["mean"].reverse(),
+        lambda line: line.update(sigma=[]),
+    ],
+)
+def test_a_broken_journal_ends_in_a_line_that_names_it(tmp_path, change):
+    run(tmp_path, Bowl(), iterations=2)
+    lines = [json.loads(line) for line in (tmp_path / "journal.jsonl").read_text().splitlines()]
+    change(lines[-1])
+    (tmp_path / "journal.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    with pytest.raises(AirHockeyError, match="journal"):
+        training.train(training.resume(tmp_path, {"iterations": 3}), Bowl())
+
+
 def test_a_journal_of_another_search_is_not_taken_up(tmp_path):
     run(tmp_path, Bowl(), iterations=2)
-    manifest = (tmp_path / "train.json").read_text()
-    (tmp_path / "train.json").write_text(manifest.replace('"seed": 0', '"seed": 1'))
+    manifest = read_manifest(tmp_path, TRAINING, Settings, PgpeManifest)
+    other = msgspec.structs.replace(manifest, options=msgspec.structs.replace(manifest.options, seed=1))
+    write_record(tmp_path / TRAINING, other)
+    with pytest.raises(ConfigurationError, match=r"train.json' was edited since it was written"):
+        training.resume(tmp_path, {"iterations": 3})
+    write_record(tmp_path / TRAINING, sealed(other))  # by whoever can make seals
     with pytest.raises(AirHockeyError, match="iteration 0 of the journal"):
         training.train(training.resume(tmp_path, {"iterations": 3}), Bowl())
 

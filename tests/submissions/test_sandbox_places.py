@@ -18,7 +18,7 @@ from airhockey.errors import ConfigurationError
 from airhockey.evaluator import Options
 from airhockey.evaluator.isolation import agent_client, modes
 from airhockey.evaluator.isolation.build import build_agent
-from airhockey.evaluator.isolation.failures import AgentDied
+from airhockey.evaluator.isolation.failures import AgentDied, AgentRaised
 from airhockey.evaluator.play.episode import EpisodePlayer
 from airhockey.evaluator.play.game import GamePlayer
 from airhockey.evaluator.runs.game_records import GameJob, GameOptions
@@ -113,6 +113,35 @@ def test_compiled_code_that_is_other_than_its_source_is_not_seen(tmp_path: Path,
     env = envs.make("3dof-defend")
     agent = build_agent(str(entry), env, mode="sandbox")
     agent.close()
+
+
+def test_results_of_runs_in_an_entry_are_not_seen(bad: Callable[..., str], sandbox: None) -> None:
+    """They do not count, so nobody may play by them: they could be changed while a run waits."""
+    folder = Path(bad(building="raise ValueError(sorted(os.listdir('.')), sorted(os.listdir('results')))"))
+    for place in ("results", "parts"):
+        (folder / place).mkdir()
+        (folder / place / "weights.bin").write_text("x")
+    (folder / "results" / "run.json").write_text("{}")
+    with pytest.raises(AgentRaised, match=r"'parts', 'results'\], \[\]"):
+        build_agent(str(folder), envs.make("3dof-defend"), mode="sandbox")
+
+
+CONNECTING = """server, kept = socket.create_server(("127.0.0.1", 0), backlog=64), []
+while len(kept) < 100:
+    kept.append((socket.create_connection(server.getsockname()), server.accept()[0]))
+time.sleep(30)"""
+
+
+def test_connections_to_itself_without_end_are_counted(bad: Callable[..., str], sandbox: None) -> None:
+    """What waits in them is the kernel's memory, of which all of a machine has one share."""
+    env = envs.make("3dof-hit")
+    agent = build_agent(bad(CONNECTING), env, mode="sandbox")
+    agent.episode_start()
+    observation = env.reset(seed=0)
+    for _ in range(2):
+        agent.act(observation)
+    with pytest.raises(AgentDied, match="more than 128 sockets"):
+        agent.act(observation)
 
 
 def test_empty_files_without_end_are_counted(bad: Callable[..., str], sandbox: None) -> None:

@@ -12,9 +12,11 @@ import pytest
 from submission_examples import SUBMISSIONS, ZOO
 from tools import needs_opencv
 
+from airhockey import envs
 from airhockey.agents.packaging.packing import pack
 from airhockey.evaluator.isolation.limits import Limits
-from airhockey.evaluator.play.build_seats import Entrant
+from airhockey.evaluator.play.build_seats import Entrant, build_seats
+from airhockey.evaluator.play.seat import Care
 from airhockey.evaluator.validation import Trial, try_out, validate
 
 LIMITS = Limits(start=60.0, patience=20.0)
@@ -184,8 +186,26 @@ def test_an_environment_that_there_is_not_is_named(bad: Callable[..., str]) -> N
     assert "7dof-hit" in verdict.problems[0].what and verdict.problems[0].where == "env of agent_config.yml"
 
 
+POINTER = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n"
+
+
+@pytest.mark.parametrize("place", ["building", "act"])
+def test_playing_with_what_git_lfs_has_not_fetched_says_what_validate_says(bad: Callable[..., str], place: str) -> None:
+    folder = Path(bad(**{place: "np.load('weights.npy')"}))
+    (folder / "weights.npy").write_text(POINTER)
+    entrant = Entrant(str(folder), isolate="process", limits=LIMITS)
+    env, (seat,) = build_seats(lambda orders: envs.make("3dof-hit", orders[0]), [entrant], Care())
+    seat.start()
+    observation = env.reset(seed=1)
+    for step in range(1, 4):
+        seat.act(observation, step)
+    seat.close()
+    assert seat.failure is not None and "'weights.npy' is not there: git lfs has left a pointer" in seat.failure
+    assert seat.failure.endswith("(git lfs pull, in the checkout)")
+
+
 def test_a_checkout_that_git_lfs_has_not_filled_is_told_so(bad: Callable[..., str]) -> None:
-    pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n"
+    pointer = POINTER
     folder = Path(bad(building="np.load('weights.npy')"))
     (folder / "agent_config.yml").write_text("env: 3dof-hit\n")
     (folder / "weights.npy").write_text(pointer)

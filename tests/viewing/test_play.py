@@ -43,6 +43,18 @@ def test_a_hand_points_at_the_table_and_home_where_it_does_not() -> None:
     assert np.array_equal(hand.target, HOME)
 
 
+@pytest.mark.parametrize(
+    "message",
+    [
+        "[" * 200, "[1" + "0" * 400 + ", 0]", "[NaN, 0]", "[Infinity, -Infinity]", "[1e999, 0]", "[true, false]", "{}", "[0]",
+        '["0", "0"]', "[[0], 0]", "\ud800", b"\xff\xfe", b"", "9" * 5000, "[-0.0, 1e6]",
+    ],
+)  # fmt: skip
+def test_what_is_no_place_on_the_table_is_not_listened_to(page: PlayPage, message: str | bytes) -> None:
+    page._take(message)
+    assert np.array_equal(page._hand.target, HOME) and not page._somebody.is_set()
+
+
 def test_the_mallet_follows_within_the_arms_limits() -> None:
     env = envs.make("tournament")
     agent = PersonAgent(env.env_info)

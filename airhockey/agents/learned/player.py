@@ -73,6 +73,10 @@ class LearnedPlayer(AgentBase):
         network, policy = Network.load(folder / NETWORK), read_yaml(folder / POLICY)
         with reading_errors(folder / POLICY):
             actions, repeat, horizon = str(policy["actions"]), int(policy["repeat"]), int(policy["horizon"])
+            if repeat < 1 or horizon < 1:
+                raise ConfigurationError(
+                    f"{str(folder / POLICY)!r}: repeat is {repeat} and horizon {horizon}; give whole numbers from 1 up"
+                )
         return cls(env_info, network, actions, repeat, horizon, **kwargs)
 
     def _compile(self) -> None:

@@ -1,5 +1,6 @@
 """From a submission's folder to its archive: what goes in, what is left out, and why."""
 
+import contextlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -53,7 +54,8 @@ def pack(folder: Path, target: Path | None = None) -> Packed:
         write_archive(part, files, manifest.encode())
         part.replace(target)
     except OSError as error:
-        part.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            part.unlink(missing_ok=True)
         raise ConfigurationError(f"cannot write {str(target)!r}: {error.strerror}") from error
     return Packed(target, hash_of(target).sha256, manifest, left_out)
 

@@ -6,6 +6,8 @@ from airhockey.errors import ConfigurationError
 from airhockey.inputs.hashing import files_of
 
 _POINTER = b"version https://git-lfs.github.com/spec/"
+FETCH = "git lfs pull, in the checkout"
+"""What fetches large files."""
 _LARGEST_POINTER = 1024
 """Size of a pointer of Git LFS at most, in bytes, as its specification says."""
 
@@ -41,3 +43,21 @@ def pointers(root: Path) -> list[str]:
     except (OSError, ConfigurationError):
         return found  # whoever loads the entry says what is wrong there
     return found
+
+
+def what_is_missing(root: Path) -> str:
+    """Which large files of a checkout are not there, as a clause; "" where all are. `FETCH` is the remedy."""
+    files = pointers(root)
+    more = f" and {len(files) - 1} more" if len(files) > 1 else ""
+    return f"{files[0]!r}{more} is not there: git lfs has left a pointer in its place" if files else ""
+
+
+def missing_from(agent: str) -> str:
+    """The same for an agent by its name or path; "" for one that is no entry, or none that can be found."""
+    from airhockey.agents.packaging.checkout import find_checkout
+    from airhockey.agents.submission import is_submission
+
+    try:
+        return what_is_missing(find_checkout(Path(agent).expanduser()).root) if is_submission(agent) else ""
+    except (OSError, ConfigurationError):
+        return ""  # whoever builds it says what is wrong there

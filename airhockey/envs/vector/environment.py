@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.copying import Copyable
 from airhockey.envs.disturbances import Disturbances
 from airhockey.envs.environment import Environment, Order, Seed, State
 from airhockey.envs.kernel.control_step import DONE
@@ -48,7 +49,7 @@ class Batch(NamedTuple):
     final_observations: Array
 
 
-class VectorEnvironment:
+class VectorEnvironment(Copyable):
     """N environments that are stepped by threads within one compiled call.
 
     Environment i is to the bit an `airhockey.envs.Environment` that was reset with seed i of `reset`, and then, at the end of
@@ -82,8 +83,25 @@ class VectorEnvironment:
             raise ConfigurationError(f"{num_envs!r} environments: it must be a whole number from 1 up")
         if isinstance(interpolation_order, tuple):
             raise ConfigurationError(f"a batch has one interpolation order for all players, not {interpolation_order}")
-        self.num_envs = n = int(num_envs)
-        self.single = single = Environment(name, interpolation_order, disturbances, edition_name)
+        self.num_envs = int(num_envs)
+        self.single = Environment(name, interpolation_order, disturbances, edition_name)
+        self._make(threads)
+        self.reset(np.random.SeedSequence().spawn(self.num_envs) if seed is None else seed)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but what compiled code and threads work with, and the present moment."""
+        kept = {name: value for name, value in self.__dict__.items() if name not in self._made}
+        return kept | {"_now": (self._threads.count, self.get_state())}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        threads, moment = state["_now"]
+        self.__dict__.update({name: value for name, value in state.items() if name != "_now"})
+        self._make(threads)
+        self.set_state(moment)
+
+    def _make(self, threads: int) -> None:
+        """Make what compiled code and threads work with; `_made` are the names of these attributes."""
+        before, n, single = set(self.__dict__), self.num_envs, self.single
         self._threads = Threads(threads, most=n)
         self._environments = [single.copy() for _ in range(n)]
         form, robots, joints = single.formats[0], single.n_agents, single.simulation.robot.n_joints
@@ -108,7 +126,7 @@ class VectorEnvironment:
         for i, env in enumerate(self._environments):
             env.move_into(self.fleet.memories[i : i + 1], self.fleet.referees[i : i + 1], self.fleet.left[i])
         self._prepare()
-        self.reset(np.random.SeedSequence().spawn(n) if seed is None else seed)
+        self._made = {*self.__dict__, "_made"} - before
 
     @property
     def horizon(self) -> int:

@@ -14,6 +14,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from airhockey.envs.copying import Copyable
 from airhockey.envs.environment import Order
 from airhockey.envs.vector.environment import Batch, Flags, Seeds, VectorEnvironment
 from airhockey.errors import ConfigurationError
@@ -44,7 +45,7 @@ class Batched(Protocol):
         """End the threads."""
 
 
-class BatchVectorEnv(VectorEnv[Array, Array, Array]):
+class BatchVectorEnv(Copyable, VectorEnv[Array, Array, Array]):
     """A batch with one player in each environment.
 
     Where an episode ended, the observation is the first one of the next, and `infos["final_obs"]` has the last one

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.envs.copying import Copyable
 from airhockey.envs.vector.gymnasium import BatchVectorEnv
 from airhockey.errors import MissingDependencyError
 
@@ -30,7 +31,7 @@ except ImportError as error:
 Array = NDArray[Any]
 
 
-class BatchVecEnv(VecEnv):
+class BatchVecEnv(Copyable, VecEnv):
     """The adapter.
 
     It counts episodes itself, as `VecMonitor` would: where one ended, `info` holds `episode` (return and length),

@@ -5,12 +5,13 @@ import weakref
 from collections.abc import Callable
 from typing import Any
 
+from airhockey.envs.copying import NotCopyable
 from airhockey.errors import ConfigurationError
 
 Call = tuple[Callable[..., Any], tuple[Any, ...]]
 
 
-class Threads:
+class Threads(NotCopyable):
     """The calling thread and `count − 1` more, which do the same call at the same time.
 
     Args:

@@ -13,6 +13,7 @@ import numpy as np
 
 from airhockey.evaluator.isolation import channel
 from airhockey.evaluator.isolation.channel import Memory
+from airhockey.evaluator.isolation.failures import describe
 from airhockey.evaluator.isolation.restrict import Restrictions
 
 
@@ -102,8 +103,6 @@ def _problem(action: Any, values: Any) -> str | None:
 
 
 def _error_text(failure: BaseException) -> dict[str, str]:
-    from airhockey.evaluator.isolation.failures import describe
-
     return {"what": describe(failure).encode("utf-8", "replace").decode()[:1000]}
 
 

@@ -18,7 +18,7 @@ from airhockey.evaluator.isolation.sandbox import (
     software_environment,
     walls,
 )
-from airhockey.inputs.hashing import TOOLS, files_of
+from airhockey.inputs.hashing import files_of, is_left_over
 from airhockey.inputs.temporary_folders import temporary_folder
 
 SUBMISSION = "/submission"
@@ -74,7 +74,7 @@ def sandboxed(checkout: Checkout | None, limits: Limits, own: Interpreter | None
         alone = checkout.root == checkout.package
         inside = f"{SUBMISSION}/{PACKAGE}" if alone else SUBMISSION
         folder = _readable(checkout.root, temporary_folders)
-        hidden = [f"{inside}/{place}" for place in _of_tools(folder)]
+        hidden = [f"{inside}/{place}" for place in _left_over(folder)]
         command += ["--perms", "0755", "--dir", SUBMISSION] if alone else []
         command += ["--ro-bind", str(folder), inside, "--chdir", inside]
         for place in hidden:  # nor may compiled code be other than its source
@@ -105,12 +105,13 @@ def _command(own: Interpreter | None) -> list[str]:
     return python("agent_process") if own is None else [own.path, "-I", str(FOREIGN)]
 
 
-def _of_tools(folder: Path) -> list[str]:
-    """The folders of tools in a submission, which do not count and therefore are not shown."""
+def _left_over(folder: Path) -> list[str]:
+    """The folders in a submission which do not count and therefore are not shown."""
     found: list[str] = []
     for place, names, _ in os.walk(folder):
-        found += [os.path.relpath(os.path.join(place, name), folder) for name in names if name in TOOLS]
-        names[:] = [name for name in names if name not in TOOLS]
+        hidden = [name for name in names if is_left_over(place, name)]
+        found += [os.path.relpath(os.path.join(place, name), folder) for name in hidden]
+        names[:] = [name for name in names if name not in hidden]
     return found
 
 
@@ -123,8 +124,13 @@ def _readable(folder: Path, temporary_folders: list[str]) -> Path:
     copy = temporary_folder("submission")
     temporary_folders.append(str(copy))
     target = copy / "entry"
-    shutil.copytree(folder, target, symlinks=True, ignore=shutil.ignore_patterns(*TOOLS))
+    shutil.copytree(folder, target, symlinks=True, ignore=_ignored)
     for path in (copy, target, *target.rglob("*")):
         if not path.is_symlink():
             path.chmod(0o755 if path.is_dir() else 0o644)
     return target
+
+
+def _ignored(folder: str, names: list[str]) -> list[str]:
+    """Which of these names in a folder are not copied."""
+    return [name for name in names if os.path.isdir(os.path.join(folder, name)) and is_left_over(folder, name)]

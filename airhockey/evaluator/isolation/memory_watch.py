@@ -17,6 +17,7 @@ from airhockey.evaluator.isolation.process_tree import ProcessTree
 
 PERIOD = 0.1  # [s] between two looks
 _FILES = 20_000
+_SOCKETS = 128
 
 
 class Watched:
@@ -48,6 +49,8 @@ class Watched:
             self._end(f"its processes together took more than {self._memory >> 20} MiB of memory")
         elif any(map(_has_too_many_files, self._scratch)):
             self._end(f"it had more than {_FILES:,} files")
+        elif self._scratch and sockets_of(self.tree.agent) > _SOCKETS:
+            self._end(f"it had more than {_SOCKETS} sockets of a network that it does not have")
 
     def _end(self, excess: str) -> None:
         self.excess = excess
@@ -63,6 +66,19 @@ def _has_too_many_files(folder: str) -> bool:
     except OSError:
         return False
     return there.f_files - there.f_ffree > _FILES
+
+
+def sockets_of(pid: int) -> int:
+    """How many sockets of a network there are in a process's namespace.
+
+    What waits in connections to itself is memory of the kernel's, of which all of the machine has one share.
+    """
+    found = 0
+    for name in ("sockstat", "sockstat6"):
+        with contextlib.suppress(OSError), open(f"/proc/{pid}/net/{name}") as file:
+            for kind, what, number, *_ in (line.split() for line in file if line.count(" ") > 1):
+                found += int(number) if what == "inuse" and kind.startswith(("TCP", "UDP", "RAW")) else 0
+    return found
 
 
 _all: "weakref.WeakSet[Watched]" = weakref.WeakSet()

@@ -21,7 +21,7 @@ _JOIN_SESSION_KEYRING = 1
 
 NAMESPACES = 0x7E020080  # CLONE_NEW{NS,CGROUP,UTS,IPC,USER,PID,NET} and CLONE_NEWTIME
 FAMILIES = (1, 2, 10)  # AF_UNIX, AF_INET, AF_INET6
-TERMINAL_INPUT = (0x5412, 0x541C)  # TIOCSTI, TIOCLINUX
+TERMINAL_INPUT = (0x5412, 0x541C, 0x5423)  # TIOCSTI, TIOCLINUX, TIOCSETD
 
 # Numbers since 2019 are the same on every machine; before that there are x86_64's, and those of all younger ones.
 _BOTH = {

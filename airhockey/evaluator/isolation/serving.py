@@ -14,7 +14,7 @@ from airhockey.evaluator.isolation.remote import ACT, PREPROCESS, RESET, RESET_D
 
 LOOPBACK = "127.0.0.1"
 SILENCE = 10.0
-"""How long a player may be silent while another one waits, or in the middle of a request, in [s]."""
+"""How long a player may be silent while another one waits, or take for a request once it has begun, in [s]."""
 
 
 def listen(host: str, port: int) -> socket.socket:
@@ -89,10 +89,16 @@ def _next_word(connection: socket.socket, waiting: socket.socket | None) -> byte
 
 
 def _receive(connection: socket.socket, size: int) -> bytes:
-    received = b""
+    """So many bytes of a request; there is one deadline for all of them, or who sends one after the other holds up the rest."""
+    received, deadline = b"", time.monotonic() + SILENCE
     while len(received) < size:
+        left = deadline - time.monotonic()
+        if left <= 0.0:
+            raise TimeoutError
+        connection.settimeout(left)
         chunk = connection.recv(size - len(received))
         if not chunk:
             raise ConnectionError("hung up")
         received += chunk
+    connection.settimeout(SILENCE)
     return received

@@ -138,11 +138,11 @@ def _seat(entrant: Entrant, env: Any, k: int, care: Care) -> Seat:
         fault = fault_of_machine(failure, entrant.agent, mode)
         if fault is not None:
             raise fault from failure
-        seat = Seat(None, env.formats[k], care, SIDES[k])
+        seat = Seat(None, env.formats[k], care, SIDES[k], entrant.agent)
         seat.fail_to_build(failure)
         seat.isolation = mode
     else:
-        seat = Seat(agent, env.formats[k], care, SIDES[k])
+        seat = Seat(agent, env.formats[k], care, SIDES[k], entrant.agent)
     seat.build_time = time.perf_counter() - began
     return seat
 

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from airhockey.envs.copying import NotCopyable
 from airhockey.envs.specs import CONTROL_PERIOD
 from airhockey.evaluator.play.blame import fault_of, fault_of_observation, guilty_of
 from airhockey.evaluator.play.seat import Seat
 
 
-class Rollout:
+class Rollout(NotCopyable):
     """An episode of a task, or a game, as it goes on.
 
     Args:

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from airhockey.agents.packaging.unfetched import FETCH, missing_from
+from airhockey.envs.copying import NotCopyable
 from airhockey.evaluator.isolation.failures import agent_failures, describe
 from airhockey.evaluator.isolation.handle import AgentHandle
 from airhockey.evaluator.play.blame import fault_of_machine
@@ -40,7 +42,7 @@ class Care:
     watch: Watch = field(default_factory=Watch)
 
 
-class Seat:
+class Seat(NotCopyable):
     """An agent under care.
 
     Args:
@@ -48,6 +50,7 @@ class Seat:
         form: The format of its actions in the environment.
         care: How it is taken care of.
         side: Which robot it plays.
+        name: Of the agent, or the path of its entry, which git may have left unfinished.
 
     Attributes:
         clock: What measures its actions, in [s].
@@ -60,8 +63,8 @@ class Seat:
         position: The joints that it had at the latest serve, in [rad], to be held if its first command is late. Shape (n,).
     """
 
-    def __init__(self, agent: AgentHandle | None, form: Any, care: Care, side: Side = HOME) -> None:
-        self.agent, self.form, self.side = agent, form, side
+    def __init__(self, agent: AgentHandle | None, form: Any, care: Care, side: Side = HOME, name: str = "") -> None:
+        self.agent, self.form, self.side, self._name = agent, form, side, name
         self.failure: str | None = None
         self.error: BaseException | None = None
         self.clock = agent.clock(care.clock) if agent is not None else time.perf_counter
@@ -144,11 +147,16 @@ class Seat:
         """It could not be built, or not as it wants to be."""
         self.close()
         self.agent = None
-        self.error, self.failure = failure, f"build_agent: {describe(failure)}"
+        self.error, self.failure = failure, f"build_agent: {describe(failure)}{self._unfetched()}"
 
     def fail(self, failure: BaseException, step: int) -> None:
         """It failed in a control step, from 1; 0 in `episode_start`."""
-        self.error, self.failure = failure, self._care.reason(failure, step)
+        self.error, self.failure = failure, self._care.reason(failure, step) + self._unfetched()
+
+    def _unfetched(self) -> str:
+        """What git has not fetched of its checkout, behind a failure that may come from that."""
+        what = missing_from(self._name)
+        return f"; {what} ({FETCH})" if what else ""
 
     def _fail(self, failure: BaseException, step: int) -> None:
         """Its code raised: it failed, or the machine did under one of our own players."""

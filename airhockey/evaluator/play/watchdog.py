@@ -17,6 +17,7 @@ from typing import Any, Final, Self
 
 import msgspec
 
+from airhockey.envs.copying import NotCopyable
 from airhockey.evaluator.runs.game_records import AWAY, HOME, Side, Status
 
 PATIENCE = 300.0
@@ -31,7 +32,7 @@ class Overtime(Exception):
     """A call of an agent took longer than anybody waits."""
 
 
-class Watch:
+class Watch(NotCopyable):
     """Watches the calls of a game's agents; a context that lasts as long as the game.
 
     Args:

@@ -21,7 +21,7 @@ from airhockey.envs.disturbances import load_disturbances
 from airhockey.errors import ConfigurationError
 from airhockey.evaluator.runs import journal
 from airhockey.evaluator.runs.disk import begin_folder, disk_errors, lock_folder, write_record
-from airhockey.evaluator.runs.inputs import check_unchanged, hashes_of
+from airhockey.evaluator.runs.inputs import check_unchanged, hashes_of, in_full
 from airhockey.evaluator.runs.journal import Record
 from airhockey.evaluator.runs.manifest import (
     Manifest,
@@ -46,7 +46,6 @@ class RunFolder(NotCopyable, Generic[Options, Record]):
         name: The manifest's file name.
         options_type, record_type: What the options and the journal's lines are.
         manifest_type: `Manifest`, or a kind of it.
-        has_seal: Whether a manifest that was edited is known by its seal.
         path: The folder.
         manifest: What the run is.
         records: Of the finished work.
@@ -57,7 +56,6 @@ class RunFolder(NotCopyable, Generic[Options, Record]):
     options_type: ClassVar[type]
     record_type: ClassVar[type]
     manifest_type: ClassVar[Any] = Manifest
-    has_seal: ClassVar[bool] = True
     manifest: Manifest[Options]
 
     def __init__(self, path: Path, asked: Mapping[str, Any] | None = None) -> None:
@@ -71,8 +69,7 @@ class RunFolder(NotCopyable, Generic[Options, Record]):
                 check_same_run(path, self.manifest, asked)
                 check_versions(path, self.manifest.versions, self.versions())
                 check_unchanged(path, self.manifest.inputs)
-                if self.has_seal:
-                    check_seal(path, self.name, self.manifest)
+                check_seal(path, self.name, self.manifest)
                 self.notes += filter(None, [note_on_profile(path, self.manifest)])
             with disk_errors(path):
                 self.records: list[Record] = self.recover()
@@ -89,6 +86,7 @@ class RunFolder(NotCopyable, Generic[Options, Record]):
         Raises:
             ConfigurationError: An option has no meaning, or the folder holds something or cannot be written.
         """
+        options = in_full(options)
         cls.check(options)
         return cls.create(
             path,

@@ -6,12 +6,35 @@ from typing import Any
 
 import msgspec
 
+from airhockey.agents.registry import AGENTS
 from airhockey.errors import ConfigurationError
 from airhockey.inputs.hashing import content_hash
-from airhockey.inputs.names import shown
+from airhockey.inputs.names import is_text, shown
 
+AGENTS_FIELDS = frozenset(("agent", "second_agent", "home", "away"))
+"""Options that say who plays."""
 KEPT_WHOLE = frozenset(("disturbances",))
 """Options whose files' content is in the manifest itself."""
+
+
+def in_full(options: Any, field: str = "") -> Any:
+    """The same options, with agents and parameters that are named by relative paths named by full ones.
+
+    Raises:
+        ConfigurationError: A text is none that a manifest can hold.
+    """
+    if isinstance(options, msgspec.Struct):
+        values = {name: getattr(options, name) for name in options.__struct_fields__}
+        full = {name: in_full(value, name) for name, value in values.items()}
+        return options if full == values else msgspec.structs.replace(options, **full)
+    if isinstance(options, tuple):
+        return tuple(in_full(item, field) for item in options)
+    if isinstance(options, str) and not is_text(options):
+        raise ConfigurationError(f"{shown(options)} is not UTF-8 text, so no manifest can name it; rename it")
+    is_path = isinstance(options, str) and (field in AGENTS_FIELDS or (field == "parameters" and "." in options))
+    if not is_path or options in AGENTS or not Path(options).expanduser().exists():
+        return options
+    return str(Path(options).expanduser().resolve())
 
 
 def hashes_of(options: Any) -> dict[str, str]:

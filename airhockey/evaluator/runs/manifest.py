@@ -5,6 +5,7 @@ run.json  match.json  tournament.json  sweep.json  train.json  reproduction.json
 
 import datetime
 import hashlib
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -22,6 +23,8 @@ KINDS = {
     RUN: "run", MATCH: "match", TOURNAMENT: "tournament", TRAINING: "training run", REPRODUCTION: "reproduction", SWEEP: "sweep"
 }  # fmt: skip
 """A manifest's file name -> what it is the manifest of."""
+SEALED_SINCE = (0, 1)
+"""The version of airhockey since which manifests are sealed, as far as it decides."""
 
 
 class Manifest(msgspec.Struct, Generic[Options], frozen=True, kw_only=True):
@@ -34,7 +37,7 @@ class Manifest(msgspec.Struct, Generic[Options], frozen=True, kw_only=True):
         created: Local time, ISO 8601.
         format: Of the run's folder.
         inputs: Path of an agent or a file -> SHA-256 of its content.
-        seal: SHA-256 of everything else but the time; "" in manifests that are older than this field.
+        seal: SHA-256 of everything else but the time; "" in manifests that are older than `SEALED_SINCE`.
     """
 
     options: Options
@@ -63,16 +66,25 @@ def sealed(manifest: Kind) -> Kind:
     return msgspec.structs.replace(manifest, seal=hashlib.sha256(msgspec.json.encode(bare)).hexdigest())
 
 
-def was_edited(manifest: Manifest[Any]) -> bool:
-    """Whether a manifest is another than what was written."""
-    return bool(manifest.seal) and sealed(manifest).seal != manifest.seal
+def what_became_of(manifest: Manifest[Any]) -> str | None:
+    """What happened to a manifest since it was written, to be put behind its name; None where it is what was written."""
+    if not manifest.seal:
+        return "was made before there were seals" if _is_older(manifest) else "has lost its seal"
+    return "was edited since it was written" if sealed(manifest).seal != manifest.seal else None
+
+
+def _is_older(manifest: Manifest[Any]) -> bool:
+    """Whether the software that wrote a manifest knew no seals; what names no version is taken for the newest."""
+    numbers = re.match(r"(\d{1,9})\.(\d{1,9})", manifest.versions.get("airhockey", ""))
+    return numbers is not None and (int(numbers[1]), int(numbers[2])) < SEALED_SINCE
 
 
 def check_seal(path: Path, name: str, manifest: Manifest[Any]) -> None:
-    """What goes on must be what was begun; raises `ConfigurationError` for a manifest that was edited."""
-    if was_edited(manifest):
+    """What goes on must be what was begun; raises `ConfigurationError` for a manifest that is not what was written."""
+    what = what_became_of(manifest)
+    if what is not None:
         raise ConfigurationError(
-            f"{str(path / name)!r} was edited since it was written: one result would come from two runs; put its content back, "
+            f"{str(path / name)!r} {what}: one result would come from two runs; put its content back, "
             "or begin a new run with another --out"
         )
 

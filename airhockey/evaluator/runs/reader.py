@@ -26,7 +26,7 @@ from airhockey.evaluator.runs.manifest import (
     Manifest,
     option_of,
     read_manifest,
-    was_edited,
+    what_became_of,
 )
 from airhockey.evaluator.runs.records import EpisodeRecord, Job, Options
 from airhockey.evaluator.runs.trajectories import TRAJECTORIES
@@ -265,8 +265,9 @@ def _read_manifest(folder: _Folder[Any], name: str, kind: type[Any], unknown: st
     """Read the manifest; where there is none, it is said what is unknown."""
     try:
         folder.manifest = read_manifest(folder.path, name, kind)
-        if was_edited(folder.manifest):
-            folder.notes.append(f"{name} was edited since it was written: the results may not be of what it says")
+        what = what_became_of(folder.manifest)
+        if what is not None:
+            folder.notes.append(f"{name} {what}: the results may not be of what it says")
     except (ConfigurationError, OSError) as error:
         there = (folder.path / name).exists()
         why = reason(error, folder.path) if there else f"{name} is missing"

@@ -88,6 +88,7 @@ class GameBatch(LearningBatch):
             if name in choice:
                 raise unknown("choice for games", name, ("actions", "observations", "opponents", "weights"))
         self.weights, self._names = read_weights(weights), list(opponents)
+        self.terms = dict[str, Array]()
         super().__init__("tournament", num_envs, repeat=1, **choice)
 
     @property
@@ -109,6 +110,10 @@ class GameBatch(LearningBatch):
         """See `VectorEnvironment`."""
         return super().new_batch()._replace(rewards=np.zeros(self.num_envs))
 
+    def __getstate__(self) -> dict[str, Any]:
+        """A copy's opponents are those of now, rather than built from folders that may have changed."""
+        return super().__getstate__() | {"_names": list(self.opponents)}
+
     def get_state(self) -> Any:
         """See `LearningBatch`."""
         players = [one.copy() for one in self.opponents], [one and one.copy() for one in self._next]
@@ -124,7 +129,7 @@ class GameBatch(LearningBatch):
         n = self.num_envs
         self._prepare_learner()
         self._width = self.learner.raw.shape[1] // 2
-        self.terms = {name: np.zeros(n) for name in TERMS}
+        self.terms = self.terms or {name: np.zeros(n) for name in TERMS}
         self.opponents, self._next = [None] * n, [None] * n
         for i in range(n):
             self.replace_opponent(i, self._names[i % len(self._names)])

@@ -28,7 +28,6 @@ class TrainingFolder(RunFolder[Settings, Iteration]):
 
     name, options_type, record_type = TRAINING, Settings, Iteration
     manifest_type = PgpeManifest
-    has_seal = False  # the search itself knows a journal that it would not have written
     manifest: PgpeManifest[Settings]
 
     @classmethod

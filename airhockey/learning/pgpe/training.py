@@ -18,6 +18,8 @@ from airhockey.evaluator.engines.engine import InProcess
 from airhockey.evaluator.engines.pool import JobFailed, Pool
 from airhockey.evaluator.engines.processes import Processes
 from airhockey.evaluator.play.blame import machine_ended
+from airhockey.evaluator.runs.journal import NAME as JOURNAL
+from airhockey.inputs.broken import reading_errors
 from airhockey.learning.diverged import DivergedError
 from airhockey.learning.pgpe.folder import TrainingFolder
 from airhockey.learning.pgpe.hyperpolicy import Hyperpolicy
@@ -99,12 +101,12 @@ def train(
         stand = _Stand(pool, settings, on_episode)
         learner = _Learner(settings, search_of(settings), PenaltyBudget(settings.max_penalty, settings.multiplier_rate))
         for done in folder.records:
-            theta = learner.ask(done.iteration)
-            if not np.array_equal(theta, np.array(done.theta)):
+            with reading_errors(folder.path / JOURNAL):
+                is_ours = learner.repeat(done)
+            if not is_ours:
                 raise AirHockeyError(
-                    f"iteration {done.iteration} of the journal is not what this search would have tried"
+                    f"iteration {done.iteration} of the journal is not what this search would have tried and learned"
                 )
-            learner.learn(done.iteration, theta, np.array(done.returns), np.array(done.penalties))
         for number in range(len(folder.records), settings.iterations):
             iteration = _iterate(learner, number, stand.play)
             folder.add(iteration)
@@ -177,6 +179,16 @@ class _Learner:
         self.search.tell(theta, self.budget.values(returns, penalties), rate)
         self.budget.update(penalties)
         return rate
+
+    def repeat(self, done: Iteration) -> bool:
+        """Do an iteration again from its record; whether the record is of this search."""
+        theta = self.ask(done.iteration)
+        if not np.array_equal(theta, np.array(done.theta)) or not len(done.returns) == len(done.penalties) == len(
+            theta
+        ):
+            return False
+        self.learn(done.iteration, theta, np.array(done.returns), np.array(done.penalties))
+        return np.array_equal(self.search.mean, done.mean) and np.array_equal(self.search.sigma, done.sigma)
 
     def check_progress(self, returns: Array) -> None:
         """See `search.check_progress`."""

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from airhockey.errors import ConfigurationError, MissingDependencyError
+from airhockey.inputs.broken import reading_errors
 
 Array = NDArray[np.float64]
 
@@ -65,11 +66,15 @@ def read_log(run: Path) -> dict[str, Array]:
     """Columns of a run's log.
 
     Raises:
-        ConfigurationError: There is no log, or nothing in it.
+        ConfigurationError: There is no log, nothing in it, or something else.
     """
     path = run / LOG
-    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-    if len(lines) < 2:
-        raise ConfigurationError(f"the run in {str(run)!r} has written no line to its {LOG} yet: nothing to plot")
-    values = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
-    return dict(zip(lines[0].split(","), values.T, strict=True))
+    with reading_errors(path):
+        lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+        names = lines[0].split(",") if lines else []
+        values = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
+        if values.size and (missing := {"steps", *(column for column, _, _ in PANELS)}.difference(names)):
+            raise ConfigurationError(f"{str(path)!r} has no column {', '.join(sorted(missing))}")
+        if not values.size:
+            raise ConfigurationError(f"the run in {str(run)!r} has written no line to its {LOG} yet: nothing to plot")
+        return dict(zip(names, values.T, strict=True))

@@ -1,11 +1,19 @@
 """A batch's moments, its caller's arrays, its complaints."""
 
+import contextlib
+import copy
+import itertools
+import pickle
+
+import gymnasium
 import numpy as np
 import pytest
 from arms import standing
 
 from airhockey import envs
 from airhockey.errors import ActionError, ConfigurationError
+from airhockey.learning.envs.batch import LearningBatch
+from airhockey.learning.envs.game import GameBatch
 
 
 def still(vec):
@@ -93,3 +101,31 @@ def test_no_more_threads_are_started_than_there_are_environments():
     from airhockey.envs.vector.threads import Threads
 
     assert (Threads(4, most=1).count, Threads(2, most=8).count) == (1, 2)
+
+
+@pytest.mark.parametrize("way", [copy.deepcopy, copy.copy, lambda batch: pickle.loads(pickle.dumps(batch))])
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: envs.make_vec("tournament", 2, disturbances="harsh"),
+        lambda: LearningBatch("7dof-defend", 3, disturbances="server", threads=2),
+        lambda: GameBatch(2, opponents=["hold"]),
+        lambda: gymnasium.make_vec("airhockey.envs.gymnasium:airhockey/7dof-defend-v0", num_envs=2).unwrapped,
+    ],
+)
+def test_a_copied_batch_has_the_same_future_and_disturbs_nobody(make, way):
+    batch, random = make(), np.random.default_rng(0)
+    batch.reset(seed=1)
+    shape = getattr(batch, "action_shape", None) or batch.action_space.shape[1:]
+    actions = random.normal(0.0, 0.3, (60, batch.num_envs, *shape)).astype(np.float32)
+    for action in actions[:10]:
+        batch.step(action)
+    twin = way(batch)
+    with contextlib.closing(batch), contextlib.closing(twin):
+        futures = [[parts(one.step(action)) for action in actions[10:]] for one in (batch, twin)]
+    assert all(np.array_equal(a, b) for a, b in zip(*map(itertools.chain.from_iterable, futures), strict=True))
+
+
+def parts(step):
+    """Observations, rewards and ends."""
+    return [np.array(part) for part in (step[:4])]

@@ -17,6 +17,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
+import strokes
 
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator.analysis.shots import shots_of
@@ -106,6 +107,13 @@ python benchmarks/champions_cup.py --players {players} --games {games} --steps {
 ```
 
 {table}
+
+## How fast a stroke can be
+
+By `python benchmarks/strokes.py`, in [m]/[s]: the mallet's speed that the joints' velocity limits allow at the contact, in the
+posture of the stroke and in the best one; what the planner asks for, and its share of the best; and the puck's speed afterwards.
+
+{strokes}
 """
 
 
@@ -120,6 +128,7 @@ def page(lines: Sequence[str], options: argparse.Namespace) -> str:
         seed=options.seed,
         out=options.out,
         table="\n".join(lines),
+        strokes="\n".join(strokes.lines()),
     )
 
 

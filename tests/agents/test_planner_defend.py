@@ -5,10 +5,12 @@ import pytest
 from skill_player import SkillPlayer
 
 from airhockey.agents.control.cartesian import cubic
-from airhockey.agents.estimation.motion import puck_motion
+from airhockey.agents.estimation.kalman import PuckEstimate
+from airhockey.agents.estimation.motion import advance, puck_motion
 from airhockey.agents.planner.contacts.interception import STEP, Reach, Way, best_meeting, effort, meeting, puck_path
 from airhockey.agents.planner.skills.defend import Defend
 from airhockey.agents.planner.skills.repel import Repel
+from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, HOME
 from airhockey.errors import ConfigurationError
 
@@ -107,3 +109,22 @@ def test_a_parameter_file_that_does_not_fit_is_named(iiwa, tmp_path):
         Defend(iiwa.env.env_info, path)
     with pytest.raises(ConfigurationError, match="nowhere"):
         Defend(iiwa.env.env_info, "nowhere")
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_way_to_the_guard_goes_round_a_slow_puck(iiwa, side):
+    """Straight on, this mallet would knock the puck, which rolls beside our goal, into it."""
+    puck, tip, velocity = (
+        np.array([-0.88, 0.21 * side, -0.15, -0.14 * side, 0.0]),
+        np.array([-0.90, 0.34 * side]),
+        np.zeros(2),
+    )
+    gaps = []
+    for step in range(60):
+        estimate = PuckEstimate(puck.copy(), 1e-6 * np.eye(5), 0)
+        now = Situation(estimate, tip, velocity, None, 0.02, step, lambda *state: np.array(state))
+        tip, velocity = iiwa.skill._guard(now)
+        advance(puck, 0.02, CONSTANTS)
+        gaps.append(np.hypot(*(puck[:2] - tip)) - CONTACT)
+    assert min(gaps) > 0.0
+    assert np.hypot(*(tip - [-0.84, 0.0])) < 0.25  # and it gets there

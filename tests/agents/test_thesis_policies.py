@@ -143,3 +143,67 @@ def test_an_opponent_that_repeats_itself_is_foreseen_and_another_one_is_not():
     for ahead in (0.0, 0.5, 1.0):
         np.testing.assert_allclose(repeating.predict(ahead), eight(79 * DT + ahead), atol=0.02)
     np.testing.assert_allclose(wandering.predict(1.0), wandering.predict(0.0))
+
+
+def pushes(parameters, cycles=3):
+    """Least distance of the end-effector to a puck that nothing moves, for one push after the other."""
+    policy = PreparePolicy(parameters.prepare)
+    puck, tip, least = np.array([-0.5, -0.46]), np.array(HOME), []
+    for _ in range(cycles):
+        policy.start()
+        tips, phases = follow(policy, puck, tip, 600)
+        tip = tips[-1]
+        least.append(min(np.hypot(*(tips - puck).T)[np.array(phases) == "acceleration"]))
+    return least
+
+
+def test_a_push_in_vain_is_followed_by_a_deeper_one():
+    first, second, third = pushes(thesis_parameters("tuned"))
+    deeper = thesis_parameters("tuned").prepare.deeper
+    assert first - second == pytest.approx(deeper, abs=0.004)  # a step's length
+    assert first - third == pytest.approx(2.0 * deeper, abs=0.004)
+
+
+def test_the_text_never_pushes_deeper():
+    parameters = thesis_parameters("thesis")
+    deepest = CONTACT + parameters.prepare.touch - parameters.prepare.theta[2]  # within a step of the touch
+    assert min(pushes(parameters, cycles=5)) > deepest
+
+
+def test_another_serve_forgets_the_pushes_in_vain():
+    policy = PreparePolicy(thesis_parameters("tuned").prepare)
+    puck = np.array([-0.5, -0.46])
+    for reset in (False, True):
+        policy.start()
+        follow(policy, puck, HOME, 600)
+        if reset:
+            policy.reset()
+        policy.start()
+        tips, _ = follow(policy, puck, HOME, 600, until="retreat")
+        distance = np.hypot(*(tips[-1] - puck))
+        assert (distance < CONTACT - 0.008) != reset
+
+
+def steps_before_the_push(parameters):
+    """For an end-effector that cannot move on, beside a puck at the short rim."""
+    policy = PreparePolicy(parameters.prepare)
+    for step in range(120):
+        policy.step(view((-0.927, 0.148), (-0.92, 0.038)))
+        if policy.phase == "acceleration":
+            return step
+    return None
+
+
+def test_an_end_effector_that_is_stuck_pushes_from_where_it_is():
+    tuned = thesis_parameters("tuned")
+    assert steps_before_the_push(tuned) == pytest.approx(tuned.prepare.stuck, abs=2)
+    assert steps_before_the_push(thesis_parameters("thesis")) is None
+
+
+@pytest.mark.parametrize(("puck", "hard"), [((-0.85, -0.3), True), ((-0.85, -0.1), False), ((-0.5, -0.46), False)])
+def test_only_a_push_at_the_short_rim_is_a_hard_one(puck, hard):
+    """From there the puck must come a long way; at the side rim it would run too far, past the own goal it could go in."""
+    parameters = thesis_parameters("tuned").prepare
+    tips, phases = follow(PreparePolicy(parameters), np.array(puck), HOME, 600, until="retreat")
+    steps = np.hypot(*np.diff(tips, axis=0).T)[np.array(phases[1:]) == "acceleration"]
+    assert np.median(steps) == pytest.approx(parameters.end_push if hard else parameters.theta[2], rel=0.05)

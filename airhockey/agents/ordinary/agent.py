@@ -25,18 +25,13 @@ class OrdinaryAgent(PlainPlayer):
         """See `PlainPlayer.reset`."""
         super().reset()
         self._cross = 0.0
-        self._rest = 0
+        self.pause = 0
 
     def play(self) -> Array:
         """See `PlainPlayer.play`."""
-        if self.hit is not None:
-            action, over = self.follow(self.hit)
-            if over:
-                self.hit, self._rest = None, 20
+        action = self.hitting((0.0, 0.0), 6.0, 20)
+        if action is not None:
             return action
-        if self._rest > 0:
-            self._rest -= 1
-            return self.toward(0.0, 0.0, 6.0)
         if self.x > 0.0 or self.vx < -0.3:
             return self._defend()
         if self.speed > 0.25:

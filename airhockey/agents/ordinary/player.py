@@ -59,6 +59,7 @@ class PlainPlayer(AgentBase):
         self._arm = JointController(ArmKinematics(spec_of(env_info)), Workspace.of(env_info), self.dt)
         self._ids = [int(i) for i in (*env_info["puck_pos_ids"][:2], *env_info["puck_vel_ids"][:2])]
         self.posture: Array | None = None
+        self.pause = 0  # steps that it still rests after a hit
         self.rng = np.random.default_rng(agent_id)
         self.reset()
 
@@ -210,6 +211,29 @@ class PlainPlayer(AgentBase):
             places.append((place, (velocity * t + s * (2.0 * c2 + 3.0 * s * c3)) / t))
         hit.time = left
         return self.command(places[0][0], places[1][0], places[0][1], places[1][1]), False
+
+    def hitting(
+        self, velocity: tuple[float, float], acceleration: float, pause: int, through: float = 0.04
+    ) -> Array | None:
+        """One step of the hit under way, or of the pause after it; None where there is neither.
+
+        Args:
+            velocity, acceleration: Which the mallet takes up in the pause, in [m]/[s], and how fast, in [m]/[s²].
+            pause: Its length, in steps.
+            through: As for `follow`.
+
+        Returns:
+            Shape (2, n).
+        """
+        if self.hit is not None:
+            action, over = self.follow(self.hit, through)
+            if over:
+                self.hit, self.pause = None, pause
+            return action
+        if self.pause > 0:
+            self.pause -= 1
+            return self.toward(*velocity, acceleration)
+        return None
 
 
 def straight(x: float, y: float, aim: float) -> float:

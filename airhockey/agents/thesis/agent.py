@@ -68,8 +68,9 @@ class ThesisAgent(AgentBase):
             Task.HOME: HomePolicy(p.home, p.hit.theta),
             Task.HIT: HitPolicy(p.hit, self._opponent),
             Task.DEFEND: DefendPolicy(p.defend),
-            Task.PREPARE: PreparePolicy(p.prepare),
+            Task.PREPARE: (prepare := PreparePolicy(p.prepare)),
         }
+        self._prepare = prepare
         self._skills: dict[Task, Skill] = {task: RuleSkill(task, policy) for task, policy in policies.items()}
         puck_predictor()  # compiles before the game
         tasks = TASKS.get(task_of(env_info), TASKS["tournament"])
@@ -85,6 +86,7 @@ class ThesisAgent(AgentBase):
         self._opponent.reset()
         self._machine.reset()
         self._switcher.reset()
+        self._prepare.reset()
         self._first = True
 
     def draw_action(self, observation: Array) -> Array:

@@ -39,7 +39,7 @@ def bank_aim(puck: Array, band: tuple[float, float], largest_tilt: float, end_to
         In [°], 0 ≤ β < 360; 90 pushes straight at the side rim, 0 at the short rim.
     """
     x, y = float(puck[0]), -abs(float(puck[1]))
-    if HALF_LENGTH + x >= TOLERANCE + end_tolerance:
+    if not lies_behind(puck, end_tolerance):
         sideways = float(np.clip(x, *band)) - x
         return 90.0 + _tilt(HALF_WIDTH - PUCK.radius + y, -y, sideways, largest_tilt)
     if -y < _MOUTH:
@@ -48,6 +48,16 @@ def bank_aim(puck: Array, band: tuple[float, float], largest_tilt: float, end_to
     # To push inwards the end-effector stands nearer to the side rim than the puck, as far as there is room for it.
     room = float(np.degrees(np.arcsin(np.clip((-_LARGEST_Y - y) / CONTACT, -1.0, 1.0))))
     return max(-tilt, room) % 360.0
+
+
+def lies_behind(puck: Array, end_tolerance: float) -> bool:
+    """Whether a puck lies so near to the short rim that it must come forward. Shape (2,)."""
+    return bool(HALF_LENGTH + puck[0] < TOLERANCE + end_tolerance)
+
+
+def off_the_short_rim(puck: Array, end_tolerance: float) -> bool:
+    """Whether a bank shot pushes this puck at the short rim, and not at a side rim or past the own goal. Shape (2,)."""
+    return lies_behind(puck, end_tolerance) and bool(abs(puck[1]) >= _MOUTH)
 
 
 def _tilt(gap: float, depth: float, sideways: float, largest: float) -> float:

@@ -21,7 +21,7 @@ from airhockey.agents.estimation.kalman import PuckEstimate
 from airhockey.agents.estimation.side_clock import HURRY
 from airhockey.agents.skill import Situation
 from airhockey.agents.table import CONTACT, HALF_LENGTH, HOME
-from airhockey.agents.thesis.bank_shot import bank_aim
+from airhockey.agents.thesis.bank_shot import bank_aim, off_the_short_rim
 from airhockey.agents.thesis.polar import Polar, cartesian, limited_step, polar, wrapped
 from airhockey.agents.thesis.policy import TOLERANCE, Move, enough_space
 from airhockey.envs.specs import PUCK
@@ -30,6 +30,10 @@ Array = NDArray[np.float64]
 
 _STILL = 0.03
 """Speed below which a puck is at rest, in [m]/[s]."""
+_STOPPED = 0.002
+"""Way of a step below which the mallet has stopped, in [m]: noise moves its aim by a millimetre."""
+_LEFT = 0.01
+"""Way of the puck below which a push was in vain, in [m]."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +56,9 @@ class PrepareParameters:
         retreat: Distance to the puck at which the task is finished, in [m].
         longest_push: Steps after which a push is over even if nothing was felt.
         longest_adjustment: Steps after which the push starts wherever the mallet has got to: an aim may be out of its reach.
+        stuck: The same, counted from when the mallet has stopped on its way.
+        end_push: ds of a push at the short rim, from which the puck must come a long way, in [m]; 0: θ2.
+        deeper: By how much further a push goes for each one before it that has left the puck where it was, in [m].
     """
 
     theta: tuple[float, ...] = field(metadata={"length": 3})
@@ -72,6 +79,9 @@ class PrepareParameters:
     retreat: float
     longest_push: float
     longest_adjustment: float = 10000.0
+    stuck: float = 10000.0
+    end_push: float = 0.0
+    deeper: float = 0.0
 
 
 def correction(beta: float, y_puck: float, aim: float = 90.0) -> float:
@@ -102,7 +112,13 @@ class PreparePolicy:
 
     def __init__(self, parameters: PrepareParameters) -> None:
         self._parameters = parameters
+        self.reset()
         self.start()
+
+    def reset(self) -> None:
+        """A serve: forget the pushes before."""
+        self._pushed_at: Array | None = None
+        self._vain = 0
 
     def start(self) -> None:
         """See `Policy.start`."""
@@ -110,6 +126,7 @@ class PreparePolicy:
 
     def _enter(self, phase: str) -> None:
         self.phase, self._t_phase = phase, 0
+        self._before, self._still = HOME, 0
 
     def step(self, now: Situation) -> Move:
         """See `Policy.step`."""
@@ -160,10 +177,25 @@ class PreparePolicy:
         target = cartesian(puck, Polar(here.beta - _side(puck) * turn, radius))
         if now.puck.speed >= 2.0 * p.wait_speed:
             return Move(now.tip, finished=True)
+        self._still = self._still + 1 if np.hypot(*(now.tip - self._before)) < _STOPPED else 0
+        self._before = now.tip
         arrived = abs(off) < p.aligned and here.radius < p.stand_off + 0.01
-        if arrived or self._t_phase > p.longest_adjustment:
+        if arrived or self._t_phase > p.longest_adjustment or self._still > p.stuck:
+            self._count(puck)
             self._enter("acceleration")
         return Move(limited_step(now.tip, target, p.longest_step))
+
+    def _count(self, puck: Array) -> None:
+        """Another push begins: was the one before it in vain?"""
+        vain = self._pushed_at is not None and np.hypot(*(puck - self._pushed_at)) < _LEFT
+        self._vain = self._vain + 1 if vain else 0
+        self._pushed_at = puck.copy()
+
+    def _pace(self, puck: Array) -> float:
+        """ds of a push, in [m]."""
+        p = self._parameters
+        hard = p.bank_shot and p.end_push > 0.0 and off_the_short_rim(puck, p.end_tolerance)
+        return p.end_push if hard else d_s(p.theta, "acceleration")
 
     def _push(self, now: Situation) -> Move:
         """Straight at the puck until it is touched."""
@@ -171,12 +203,12 @@ class PreparePolicy:
         here = polar(puck, now.tip)
         off = correction(here.beta, puck[1], self._aim(puck))
         turn = d_beta(p.theta, "acceleration", self._t_phase, off)
-        radius = here.radius - d_s(p.theta, "acceleration")
-        target = cartesian(puck, Polar(here.beta - _side(puck) * turn, radius))
-        touched = here.radius < CONTACT + p.touch or now.puck.speed > p.touch_speed
+        pace = self._pace(puck)
+        target = cartesian(puck, Polar(here.beta - _side(puck) * turn, here.radius - pace))
+        touched = here.radius < CONTACT + p.touch - p.deeper * self._vain or now.puck.speed > p.touch_speed
         if touched or self._t_phase > p.longest_push:
             self._enter("retreat")
-        return Move(limited_step(now.tip, target, p.theta[2]))
+        return Move(limited_step(now.tip, target, pace))
 
     def _retreat(self, now: Situation) -> Move:
         """Away from the puck, faster than it follows, so that it is not caught between mallet and rim."""

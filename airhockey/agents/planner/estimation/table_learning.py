@@ -15,7 +15,7 @@ DAMPING_SPREAD = 0.06
 """Standard deviation of the damping from serve to serve, in [1/s]."""
 SPEED_NOISE = 0.02
 """Of a filtered speed, in [m]/[s]."""
-RESTITUTION_SPREAD, BOUNCE_SPREAD = 0.1, 0.25
+RESTITUTION_SPREAD, BOUNCE_SPREAD = 0.1, 0.15
 """Standard deviations of the restitution: from serve to serve, and from bounce to bounce."""
 LARGEST = 1.1
 """Restitution beyond which none is believed."""

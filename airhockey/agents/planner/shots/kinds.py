@@ -39,11 +39,13 @@ KINDS = (
     Kind("far rim", 1, FULL, 0.07, -1, False),
     Kind("middling near rim", 1, 2.0, 0.06, 1, False),
     Kind("middling far rim", 1, 2.0, 0.06, -1, False),
-    Kind("double rim", 2, FULL, 0.06, 1, False),
+    Kind("double rim", 2, 2.8, 0.06, 1, False),
+    Kind("triple rim", 3, 2.8, 0.0, 0, False),
     Kind("slow rim", 1, 1.18, 0.05, 1, False),
     Kind("slowest rim", 1, 1.1, 0.04, 1, False),
     Kind("rolling corner", 0, 0.9, 0.03, 0, False),
 )
-"""Those of a game. At full pace off a rim or two, a keeper has the least time after the last bounce, and least of all at the
-post on that side; one that strikes at what comes misses slower ones. The slowest come in with little left of their speed: who
-foresees no bounce goes the wrong way first, and who does must wait."""
+"""Those of a game. At full pace off a rim, a keeper has the least time after the bounce, and least of all at the post on that
+side. Off two or three, as fast as the arm can so steeply across, the puck may pass behind a mallet before the goal. A keeper that
+strikes at what comes misses slower ones. The slowest come in with little left of their speed: who foresees no bounce goes the
+wrong way first, and who does must wait."""

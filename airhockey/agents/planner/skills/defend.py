@@ -200,10 +200,15 @@ class Defend:
             ahead = situation.puck_at(p.overtake_time)[:2]
             place = ahead + (CONTACT + p.clearance) * puck.velocity / max(puck.speed, 1e-6)
             place = np.clip(place, self._reach.lower, self._reach.upper)
-            way = round_the_puck(
-                situation.tip, place, puck.position, self._reach.lower, self._reach.upper, 0.4 * p.clearance
-            )
-            return go_to(situation, way, p.overtake_speed + 0.3, p.braking)
+            return go_to(situation, self._way_round(situation, place), p.overtake_speed + 0.3, p.braking)
         share = (p.guard_x - OWN_GOAL[0]) / max(puck.position[0] - OWN_GOAL[0], 0.2)
         place = np.array([p.guard_x, np.clip(puck.position[1] * share, -p.guard_y, p.guard_y)])
+        if puck.speed < p.overtake_speed:  # else it would be knocked into our goal on the way
+            place = self._way_round(situation, place)
         return go_to(situation, place, p.guard_speed, p.braking)
+
+    def _way_round(self, situation: Situation, place: Array) -> Array:
+        """The next place on a way that does not touch the puck. Shape (2,)."""
+        gap = 0.4 * self._parameters.clearance
+        puck = situation.puck.position
+        return round_the_puck(situation.tip, place, puck, self._reach.lower, self._reach.upper, gap)

@@ -16,19 +16,15 @@ class Banker(PlainPlayer):
     def __init__(self, env_info: Any, agent_id: int = 1, **kwargs: Any) -> None:
         super().__init__(env_info, agent_id, **kwargs)
         self.posture = BENT
-        self._rest, self._count = 0, 0
+        self._count = 0
 
     def play(self) -> Array:
         """See `PlainPlayer.play`."""
-        if self.hit is not None:
-            action, over = self.follow(self.hit)
-            if over:
-                self.hit, self._rest = None, 20
-                self._count += 1
+        before = self.hit
+        action = self.hitting((0.0, 0.0), 8.0, 20)
+        if action is not None:
+            self._count += before is not self.hit
             return action
-        if self._rest > 0:
-            self._rest -= 1
-            return self.toward(0.0, 0.0, 8.0)
         time = self.time_to(-0.78)
         if time is not None and self.speed > 0.3 and time < 3.0:
             y = min(max(self.ahead(time)[1], -0.3), 0.3)

@@ -19,18 +19,12 @@ class Sleeper(PlainPlayer):
     def __init__(self, env_info: Any, agent_id: int = 1, **kwargs: Any) -> None:
         super().__init__(env_info, agent_id, **kwargs)
         self.posture = BENT
-        self._rest = 0
 
     def play(self) -> Array:
         """See `PlainPlayer.play`."""
-        if self.hit is not None:
-            action, over = self.follow(self.hit)
-            if over:
-                self.hit, self._rest = None, 20
+        action = self.hitting((0.0, 0.0), 8.0, 20)
+        if action is not None:
             return action
-        if self._rest > 0:
-            self._rest -= 1
-            return self.toward(0.0, 0.0, 8.0)
         time = self.time_to(-0.8)
         if time is not None and self.speed > 0.25 and time < 4.0:
             y = self.ahead(time)[1]

@@ -26,7 +26,7 @@ class Sniper(PlainPlayer):
     def reset(self) -> None:
         """See `PlainPlayer.reset`."""
         super().reset()
-        self._aim, self._rest = 0.06, 0
+        self._aim, self.pause = 0.06, 0
 
     def draw_action(self, observation: Array) -> Array:
         """See `PlainPlayer.draw_action`."""
@@ -36,14 +36,9 @@ class Sniper(PlainPlayer):
 
     def play(self) -> Array:
         """See `PlainPlayer.play`."""
-        if self.hit is not None:
-            action, over = self.follow(self.hit)
-            if over:
-                self.hit, self._rest = None, 15
+        action = self.hitting((0.0, 0.0), 8.0, 15)
+        if action is not None:
             return action
-        if self._rest > 0:
-            self._rest -= 1
-            return self.toward(0.0, 0.0, 8.0)
         time = self.time_to(-0.8)
         if time is not None and self.speed > 0.4:
             y = self.ahead(time)[1]

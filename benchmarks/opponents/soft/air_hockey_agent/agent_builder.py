@@ -16,10 +16,8 @@ class Soft(PlainPlayer):
 
     def play(self) -> Array:
         """See `PlainPlayer.play`."""
-        if self.hit is not None:
-            action, over = self.follow(self.hit, 0.06)
-            if over:
-                self.hit = None
+        action = self.hitting((0.0, 0.0), 8.0, 0, through=0.06)
+        if action is not None:
             return action
         time = self.time_to(-0.78)
         if time is not None and self.speed > 0.3:

@@ -17,18 +17,12 @@ class Volley(PlainPlayer):
     def __init__(self, env_info: Any, agent_id: int = 1, **kwargs: Any) -> None:
         super().__init__(env_info, agent_id, **kwargs)
         self.posture = BENT
-        self._rest = 0
 
     def play(self) -> Array:
         """See `PlainPlayer.play`."""
-        if self.hit is not None:
-            action, over = self.follow(self.hit)
-            if over:
-                self.hit, self._rest = None, 12
+        action = self.hitting((-0.3, 0.0), 8.0, 12)
+        if action is not None:
             return action
-        if self._rest > 0:
-            self._rest -= 1
-            return self.toward(-0.3, 0.0, 8.0)
         near = self.x < 0.6 and self.vx < 0.2
         if near and self.step_count % 3 == 0:
             aim = float(self.rng.normal(0.0, 0.08))

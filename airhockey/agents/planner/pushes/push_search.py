@@ -153,7 +153,8 @@ def draw(puck: Array, goal: Goal, rng: np.random.Generator) -> Array:
     if rng.uniform(0.0, 1.0) < 0.5:
         rest = np.array([rng.uniform(goal.near_x, goal.far_x), side * rng.uniform(-0.2, goal.wide_y)])
         wanted = 0.5 * (rest - puck[:2])  # a rolling puck stops after twice its speed, in SI units
-        normal, along = -(wanted @ outward), wanted @ tangent
+        normal = -(wanted[0] * outward[0] + wanted[1] * outward[1])
+        along = wanted[0] * tangent[0] + wanted[1] * tangent[1]
         if normal > 0.02 and abs(along) < normal:
             speed = normal / (1.0 + RESTITUTION)
             across = 3.0 * along

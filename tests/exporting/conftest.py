@@ -3,15 +3,9 @@
 from pathlib import Path
 
 import pytest
-from games import play_one
+from games import short_match
 
-from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator import Options, begin, evaluate
-from airhockey.evaluator.match import MatchFolder, MatchOptions
-from airhockey.evaluator.runs.game_records import GameOptions
-from airhockey.evaluator.runs.manifest import Manifest
-
-GAME_STEPS = 60
 
 
 @pytest.fixture(scope="module")
@@ -26,14 +20,4 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def match(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A game of a little over a second."""
-    path = tmp_path_factory.mktemp("exported") / "match"
-    rules = GameOptions(steps=GAME_STEPS)
-    manifest = Manifest(
-        options=MatchOptions(home="h", away="a", game=rules),
-        profile=load_disturbances("ideal"),
-        versions={},
-        created="",
-    )
-    with MatchFolder.create(path, manifest) as folder:
-        folder.add(play_one("hold", "hold", GAME_STEPS))
-    return path
+    return short_match(tmp_path_factory.mktemp("exported") / "match")

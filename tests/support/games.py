@@ -14,14 +14,18 @@ from airhockey.agents.hold import HoldAgent
 from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator.isolation import handle
 from airhockey.evaluator.isolation.handle import LocalAgent
+from airhockey.evaluator.match import MatchFolder, MatchOptions
 from airhockey.evaluator.play.game import TIME_LIMIT, Game, GamePlay, GamePlayer, failed_in_game
 from airhockey.evaluator.play.seat import Care, Seat
 from airhockey.evaluator.runs.game_records import SIDES, Event, GameJob, GameOptions, GameRecord, PlayerResult
 from airhockey.evaluator.runs.game_trajectories import read_film
+from airhockey.evaluator.runs.manifest import Manifest
 from airhockey.evaluator.runs.records import StepTime
 
 Array = NDArray[np.float64]
 JOB = GameJob("0", "h", "a", "h", "a", seed=1)
+SHORT = 60
+"""Control steps."""
 
 
 class Stander:
@@ -132,3 +136,12 @@ def events_of(record: GameRecord, what: str) -> list[Event]:
 
 def film(folder: Path, key: str) -> bytes:
     return read_film(folder / "films" / f"{key.replace('/', '_')}.h5").tobytes()
+
+
+def short_match(path: Path) -> Path:
+    """The folder of a match with one finished game of a little over a second, between two that stand still."""
+    options = MatchOptions(home="h", away="a", game=GameOptions(steps=SHORT))
+    manifest = Manifest(options=options, profile=load_disturbances("ideal"), versions={}, created="")
+    with MatchFolder.create(path, manifest) as folder:
+        folder.add(play_one("hold", "hold", SHORT))
+    return path

@@ -3,17 +3,11 @@
 from pathlib import Path
 
 import pytest
-from games import play_one
+from games import short_match
 from tools import needs_rendering
 
-from airhockey.envs.disturbances import load_disturbances
 from airhockey.evaluator import Options, begin, evaluate
-from airhockey.evaluator.match import MatchFolder, MatchOptions
 from airhockey.evaluator.official import write_official
-from airhockey.evaluator.runs.game_records import GameOptions
-from airhockey.evaluator.runs.manifest import Manifest
-
-GAME_STEPS = 60
 
 
 @pytest.fixture(scope="session")
@@ -28,17 +22,7 @@ def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def match_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A game of a little over a second."""
-    path = tmp_path_factory.mktemp("results") / "match"
-    rules = GameOptions(steps=GAME_STEPS)
-    manifest = Manifest(
-        options=MatchOptions(home="h", away="a", game=rules),
-        profile=load_disturbances("ideal"),
-        versions={},
-        created="",
-    )
-    with MatchFolder.create(path, manifest) as folder:
-        folder.add(play_one("hold", "hold", GAME_STEPS))
-    return path
+    return short_match(tmp_path_factory.mktemp("results") / "match")
 
 
 @pytest.fixture

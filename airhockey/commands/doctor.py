@@ -18,6 +18,7 @@ EXTRAS = {
     "rl": "Gymnasium and PettingZoo, training by SAC",
     "mushroom": "the challenge's MushroomRL wrapper, and entries that import MushroomRL",
     "video": "films",
+    "export": "data sets and tables for other programs",
     "learn": "training by PGPE and CMA-ES, plots",
     "cluster": "runs on a Dask cluster",
     "control": "Pinocchio, OSQP and DAQP as choices of the players",

@@ -20,7 +20,8 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 EXPENSIVE = {
-    "results": "reporting", "here": "participants", "zoo": "participants", "served": "viewer", "finished": None, "straight": None, "site": None
+    "results": "reporting", "here": "participants", "zoo": "participants", "served": "viewer",
+    "finished": None, "straight": None, "site": None,
 }  # fmt: skip
 """Fixtures that take many seconds -> the group of tests that shares them; None: of its module."""
 

@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+import weakref
 from typing import IO, Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from airhockey.errors import AirHockeyError, EnvironmentFault
 _HOST = "127.0.0.1"
 _STARTING = 60.0  # [s] that the process may take to begin
 _ENDING = 5.0  # [s] that it may take to end
-_FRAME = 0.02  # [s] between two looks for a new moment
+_FRAME, _IDLE = 0.01, 0.1  # [s] between two pictures at least, and at most
 
 
 class LivePage:
@@ -38,6 +39,7 @@ class LivePage:
         assert self._process.stdin is not None and self._process.stdout is not None
         self._moments, self._closed = self._process.stdin, False
         os.set_blocking(self._moments.fileno(), False)
+        weakref.finalize(self, self._moments.close)  # or subprocess would keep the page of an environment that is gone
         answered, _, _ = select.select([self._process.stdout], [], [], _STARTING)
         said = self._process.stdout.readline().decode().strip() if answered else f"no answer within {_STARTING:g} s"
         if not said.startswith("http"):
@@ -114,6 +116,7 @@ def _show(moments: IO[bytes], view: Any, handle: Any) -> None:
             kept = kept[whole:]
         handle.sync()
         time.sleep(_FRAME)
+        select.select([moments], [], [], _IDLE)
     os._exit(0)  # the viewer's own threads need not be waited for
 
 

@@ -1,9 +1,11 @@
 """`render()` of every interface: pictures that show what happens, at the length of the episode, also of copies."""
 
 import copy
+import gc
 import re
 import subprocess
 import sys
+import time
 import urllib.error
 import urllib.request
 import warnings
@@ -108,8 +110,12 @@ def test_several_are_live_at_once_and_one_may_be_left_open(capfd: pytest.Capture
     third = live()
     for env in (second, third):
         env.step(standing_still(np.array([-1.15570, 1.30024, 1.44280]), 3))
-    del second, env  # and nobody closes it
     third.close()
+    del second, env  # and nobody closes it
+    gc.collect()
+    time.sleep(1.0)
+    with pytest.raises(urllib.error.URLError):
+        urllib.request.urlopen(addresses[1])
 
 
 def test_a_script_may_end_while_one_is_live() -> None:

@@ -158,7 +158,7 @@ def test_a_checkout_plays_what_its_configuration_names_on_both_sides(monkeypatch
     [
         ("helper_out_of_reach", ["does not play, because", "training/tactics", "the entry's cause", "mend the import"]),
         ("package_missing", ["does not play, because", "this installation's cause", "what to do: install it"]),
-        ("size_one_arrays", ["the libraries' cause", "x.item()", "--python PATH"]),
+        pytest.param("size_one_arrays", ["the libraries' cause", "x.item()", "--python PATH"], marks=pytest.mark.long),
         pytest.param(
             "template_as_it_was",
             ["NotImplementedError", "the entry's cause", "name in env what the agent plays"],

@@ -103,7 +103,7 @@ def test_no_more_threads_are_started_than_there_are_environments():
     assert (Threads(4, most=1).count, Threads(2, most=8).count) == (1, 2)
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("way", [copy.deepcopy, copy.copy, lambda batch: pickle.loads(pickle.dumps(batch))])
 @pytest.mark.parametrize(
     "make",

@@ -41,16 +41,12 @@ def identify(recording: Path, env: str | None, name: str, out: Path | None) -> N
     hockey evaluate --task hit --disturbances cloud.yaml
     hockey identify runs/7dof-hit-planner-s0 --name mine
     """
-    from airhockey.envs.specs import IIWA, PLANAR
-    from airhockey.errors import ConfigurationError
+    from airhockey.envs.editions import ROBOTS, edition
     from airhockey.evaluator.analysis.identification import identify as identified
     from airhockey.evaluator.runs.disk import disk_errors, replace_file
 
-    episodes, envs = _of_dataset(recording) if recording.is_file() else _of_run(recording, env)
-    if not episodes:
-        raise ConfigurationError(f"no trajectory of an episode can be read in {str(recording)!r}")
-    joints = (episodes[0].observations.shape[1] - 6) // 2
-    robot = IIWA if joints >= IIWA.n_joints else PLANAR
+    envs, year, episodes = _of_dataset(recording) if recording.is_file() else _of_run(recording, env)
+    robot = ROBOTS[edition(year).environment(envs[0]).robot]
     text = _written(identified(episodes, robot.start), name, f"{len(episodes)} episodes of {', '.join(envs)}")
     if out is None:
         click.echo(text, nl=False)
@@ -60,30 +56,24 @@ def identify(recording: Path, env: str | None, name: str, out: Path | None) -> N
     click.echo(f"written to {out}")
 
 
-def _of_dataset(file: Path) -> "tuple[list[Seen], list[str]]":
+def _of_dataset(file: Path) -> "tuple[list[str], str, list[Seen]]":
+    import numpy as np
+
     from airhockey.evaluator.analysis.identification import Seen
-    from airhockey.viewing.library_official import ENVIRONMENT_OF_WIDTH, GAME, episodes_of, read_dataset
+    from airhockey.viewing.library_official import GAME, open_dataset
 
-    transitions = read_dataset(file)
-    seen = episodes_of(transitions)
-    width = seen[0].shape[1]
-    if width == _width_of(ENVIRONMENT_OF_WIDTH, GAME):
-        half = width // 2
-        return [Seen(part) for one in seen for part in (one[:, :half], one[:, half:])], [GAME]
-    return [Seen(one) for one in seen], [ENVIRONMENT_OF_WIDTH.get(width, file.parent.name)]
+    env, year, episodes = open_dataset(file)
+    if env == GAME:  # both players' in a row
+        episodes = [half for seen in episodes for half in np.split(seen, 2, axis=1)]
+    return [env], year, [Seen(seen) for seen in episodes]
 
 
-def _width_of(widths: dict[int, str], env: str) -> int:
-    return next(width for width, named in widths.items() if named == env)
-
-
-def _of_run(folder: Path, env: str | None) -> "tuple[list[Seen], list[str]]":
+def _of_run(folder: Path, env: str | None) -> "tuple[list[str], str, list[Seen]]":
     from airhockey.commands._session import MOST_NOTES, say_notes
     from airhockey.errors import ConfigurationError, unknown
     from airhockey.evaluator.analysis.identification import Seen
     from airhockey.evaluator.runs.reader import Run, open_source
-    from airhockey.evaluator.runs.trajectories import read_episode
-    from airhockey.inputs.broken import BROKEN
+    from airhockey.exporting.demonstrations import of_run
 
     run = open_source(folder)
     if not isinstance(run, Run):
@@ -94,16 +84,8 @@ def _of_run(folder: Path, env: str | None) -> "tuple[list[Seen], list[str]]":
     if env is not None and env not in run.environments:
         raise unknown("environment of this run", env, tuple(run.environments))
     envs = [one for one in run.environments if one == env or (env is None and one[0] == run.environments[0][0])]
-    found = []
-    for record in (record for one in envs for record in run.of(one) if record.steps):
-        file = run.stored.get(record.job)
-        try:
-            trajectory = {} if file is None else read_episode(file, record.env, record.index)
-        except BROKEN:
-            continue
-        if "observations" in trajectory:
-            found.append(Seen(trajectory["observations"], _commands(trajectory["actions"])))
-    return found, envs
+    played = [of_run(run, one) for one in envs]
+    return envs, run.edition, [Seen(seen.observations, _commands(seen.actions)) for one in played for seen in one]
 
 
 def _commands(actions: Any) -> Any:

@@ -115,23 +115,36 @@ def add_datasets(library: Library, paths: Sequence[Path]) -> None:
             library.notes.append(str(error))
 
 
-def _add(library: Library, path: Path, several: bool) -> None:
+def open_dataset(path: Path) -> tuple[str, str, list[Array]]:
+    """Environment, edition and observations of a dataset's episodes; these each of shape (T + 1, d).
+
+    The environment is that which the file's folder is named after, or one whose observations are as long.
+
+    Raises:
+        ConfigurationError: It is no dataset, or of no environment that there is.
+    """
     try:
         episodes = episodes_of(read_dataset(path))
-        width = episodes[0].shape[1]
+        widths = sorted({seen.shape[1] for seen in episodes})
     except (ValueError, IndexError) as error:
         raise ConfigurationError(f"{str(path)!r} is not a dataset: {error}") from error
     folder = path.parent.name
     year = edition_of_names((folder,))
-    env = folder if year is not None or folder == GAME else ENVIRONMENT_OF_WIDTH.get(width)
-    if env is None:
+    env = folder if year is not None or folder == GAME else ENVIRONMENT_OF_WIDTH.get(widths[0])
+    if env is None or len(widths) > 1:
         known = ", ".join(str(width) for width in ENVIRONMENT_OF_WIDTH)
-        raise ConfigurationError(f"{str(path)!r} has observations of {width} numbers; environments have {known}")
-    if env != folder:
+        there = " and of ".join(map(str, widths))
+        raise ConfigurationError(f"{str(path)!r} has observations of {there} numbers; environments have {known}")
+    return env, year or DEFAULT, episodes
+
+
+def _add(library: Library, path: Path, several: bool) -> None:
+    env, year, episodes = open_dataset(path)
+    if env != path.parent.name:
         library.notes.append(f"which environment {path.name} is of is not known; its observations look like {env}'s")
     for index, seen in enumerate(episodes):
         name = f"{env}/{index}" if several else str(index)
-        library.entries.append(Entry(name, _loader(name, env, seen, year or DEFAULT)))
+        library.entries.append(Entry(name, _loader(name, env, seen, year)))
 
 
 def _loader(name: str, env: str, seen: Array, year: str) -> Callable[[], Recording]:

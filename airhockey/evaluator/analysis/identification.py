@@ -73,13 +73,20 @@ def identify(episodes: Sequence[Seen], start: Sequence[float]) -> dict[str, Find
         Key of a profile (such as "puck.position") -> what was found.
 
     Raises:
-        ConfigurationError: There is too little to say anything.
+        ConfigurationError: There is too little to say anything, or it is not what this robot sees.
     """
-    steps = sum(len(one.observations) for one in episodes)
-    if steps < LEAST:
-        raise ConfigurationError(f"{steps} observations say nothing of noise; it takes {LEAST} or more")
     n = len(start)
     rows = [one.observations for one in episodes]
+    steps = sum(map(len, rows))
+    if steps < LEAST:
+        raise ConfigurationError(f"{steps} observations say nothing of noise; it takes {LEAST} or more")
+    wrong = {row.shape[1] for row in rows} - {6 + 2 * n, 9 + 2 * n}
+    if wrong:
+        raise ConfigurationError(
+            f"observations of {min(wrong)} numbers; with {n} joints there are {6 + 2 * n}, or with an opponent {9 + 2 * n}"
+        )
+    if not all(np.isfinite(row).all() for row in rows):
+        raise ConfigurationError("there are observations that are not finite")
     lost = [_lost(row) for row in rows]
     new = [~_late(row) for row in rows]
     found = {

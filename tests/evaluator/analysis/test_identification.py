@@ -3,6 +3,7 @@
 import itertools
 import pickle
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -107,3 +108,20 @@ def test_an_official_dataset_is_read_too(hockey: Hockey) -> None:
     assert "8 episodes of 7dof-hit" in out
     found = msgspec.yaml.decode(out)
     assert found["puck"]["position"] == pytest.approx(0.002, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("width", "spoilt", "words"),
+    [
+        (5, 0.0, "observations of 5 numbers; environments have"),
+        (30, 0.0, "observations of 30 numbers; environments have"),
+        (20, np.nan, "not finite"),
+        (20, "a", "is not a dataset"),
+    ],
+)
+def test_a_dataset_that_no_robot_has_seen_is_refused(hockey: Hockey, width: int, spoilt: Any, words: str) -> None:
+    seen = np.full(width, spoilt)
+    Path("dataset.pkl").write_bytes(pickle.dumps([(seen, seen, 0.0, seen, False, False)] * 300))
+    status, _, err = hockey("identify dataset.pkl")
+    assert status == 2
+    assert words in " ".join(err.split())

@@ -15,6 +15,7 @@ from typing import IO, Any
 
 import numpy as np
 
+from airhockey.envs.rendering.display import needs_studio
 from airhockey.errors import AirHockeyError, EnvironmentFault
 
 _HOST = "127.0.0.1"
@@ -30,10 +31,13 @@ class LivePage:
         env, edition: Of the environment.
 
     Raises:
-        AirHockeyError: The page could not be opened; the message says why.
+        MissingDependencyError: MuJoCo was installed without its viewer.
+        EnvironmentFault: The page could not be opened; the message says why.
     """
 
     def __init__(self, env: str, edition: str) -> None:
+        with needs_studio():
+            import mujoco.studio  # noqa: F401
         command = [sys.executable, "-P", "-m", __name__, env, edition]
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         assert self._process.stdin is not None and self._process.stdout is not None
@@ -53,11 +57,9 @@ class LivePage:
 
     def show(self, data: Any) -> None:
         """Show what an `MjData` of the scene says; a moment that comes before the page has shown the last ones is left out."""
-        moment = np.concatenate(
-            [data.qpos, data.qvel, [data.time]]
-        ).tobytes()  # far below the size that a pipe takes whole
+        moment = np.concatenate([data.qpos, data.qvel, [data.time]]).tobytes()
         try:
-            os.write(self._moments.fileno(), moment)
+            os.write(self._moments.fileno(), moment)  # far below the size that a pipe takes whole
         except BlockingIOError:
             pass
         except OSError:
@@ -80,8 +82,6 @@ def main(env: str, edition: str) -> None:
     """Show what comes on the standard input, until it ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever shows says when it is over
     try:
-        from airhockey.envs.rendering.display import needs_studio
-
         with needs_studio():
             from airhockey.envs.rendering.web import launch
         from airhockey.envs.rendering.scene_view import SceneView

@@ -23,7 +23,8 @@ from tools import needs_rendering
 import airhockey.envs.gymnasium
 from airhockey.agents.hold import standing_still
 from airhockey.envs.pettingzoo import IDS
-from airhockey.errors import ConfigurationError
+from airhockey.envs.rendering.live_page import LivePage
+from airhockey.errors import ConfigurationError, MissingDependencyError
 
 
 @pytest.fixture(autouse=True)
@@ -127,6 +128,12 @@ env.reset(seed=0)
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
     assert "watch at" in done.stderr
+
+
+def test_without_the_viewer_a_live_page_names_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mujoco.studio", None)
+    with pytest.raises(MissingDependencyError, match="pip install"):
+        LivePage("3dof-hit", "2023")
 
 
 def test_pettingzoos_check_renders() -> None:

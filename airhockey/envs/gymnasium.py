@@ -16,15 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.errors import MissingDependencyError
+from airhockey.inputs.packages import needs
 
-try:
+with needs("this interface", "Gymnasium", "rl"):
     import gymnasium
     from gymnasium import spaces
-except ImportError as error:
-    raise MissingDependencyError(
-        f"this interface needs Gymnasium, which cannot be imported ({error}); install it with: pip install 'airhockey[rl]'"
-    ) from error
 
 from airhockey.envs.copying import Copyable
 from airhockey.envs.editions import edition as rules

@@ -11,15 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from airhockey.errors import MissingDependencyError
+from airhockey.inputs.packages import needs
 
-try:
+with needs("this interface", "PettingZoo", "rl"):
     import pettingzoo
     from gymnasium import spaces
-except ImportError as error:
-    raise MissingDependencyError(
-        f"this interface needs PettingZoo, which cannot be imported ({error}); install it with: pip install 'airhockey[rl]'"
-    ) from error
 
 from airhockey.envs.actions import ActionFormat
 from airhockey.envs.copying import Copyable

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from airhockey import __version__
-from airhockey.errors import ConfigurationError, MissingDependencyError
+from airhockey.errors import ConfigurationError
 from airhockey.exporting.demonstrations import GAME, Demonstration, Demonstrations
+from airhockey.inputs.packages import needs
 
 FOLDER = "MINARI_DATASETS_PATH"
 """The variable by which Minari knows where data sets are."""
@@ -77,14 +78,10 @@ def write_minari(
 
 
 def _minari() -> tuple[Any, Any]:
-    try:
+    with needs("this format", "Minari", "export"):
         import minari
         from gymnasium import spaces
         from minari.data_collector import EpisodeBuffer  # noqa: F401
-    except ImportError as error:
-        raise MissingDependencyError(
-            f"this format needs Minari, which cannot be imported ({error}); install it with: pip install 'airhockey[export]'"
-        ) from error
     return minari, spaces
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from airhockey.envs.specs import CONTROL_PERIOD
-from airhockey.errors import MissingDependencyError
 from airhockey.evaluator.runs.game_records import SIDES, GameRecord
 from airhockey.evaluator.runs.reader import Games, Run
 from airhockey.evaluator.runs.records import EpisodeRecord
+from airhockey.inputs.packages import needs
 
 Row = dict[str, Any]
 
@@ -45,13 +45,9 @@ def as_parquet(rows: Sequence[Row]) -> bytes:
 
 def pyarrow() -> tuple[Any, Any]:
     """The modules `pyarrow` and `pyarrow.parquet`."""
-    try:
+    with needs("this format", "pyarrow", "export"):
         import pyarrow
         from pyarrow import parquet
-    except ImportError as error:
-        raise MissingDependencyError(
-            f"this format needs pyarrow, which cannot be imported ({error}); install it with: pip install 'airhockey[export]'"
-        ) from error
     return pyarrow, parquet
 
 

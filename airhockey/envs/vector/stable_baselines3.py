@@ -18,15 +18,10 @@ from numpy.typing import NDArray
 
 from airhockey.envs.copying import Copyable
 from airhockey.envs.vector.gymnasium import BatchVectorEnv
-from airhockey.errors import MissingDependencyError
+from airhockey.inputs.packages import needs
 
-try:
+with needs("this interface", "Stable-Baselines3", "rl"):
     from stable_baselines3.common.vec_env import VecEnv
-except ImportError as error:
-    raise MissingDependencyError(
-        f"this interface needs Stable-Baselines3, which cannot be imported ({error}); "
-        "install it with: pip install 'airhockey[rl]'"
-    ) from error
 
 Array = NDArray[Any]
 

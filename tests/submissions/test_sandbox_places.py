@@ -126,6 +126,17 @@ def test_results_of_runs_in_an_entry_are_not_seen(bad: Callable[..., str], sandb
         build_agent(str(folder), envs.make("3dof-defend"), mode="sandbox")
 
 
+def dies_in_its_third_action(agent: str, words: str) -> None:
+    env = envs.make("3dof-hit")
+    player = build_agent(agent, env, mode="sandbox")
+    player.episode_start()
+    observation = env.reset(seed=0)
+    for _ in range(2):
+        player.act(observation)
+    with pytest.raises(AgentDied, match=words):
+        player.act(observation)
+
+
 CONNECTING = """server, kept = socket.create_server(("127.0.0.1", 0), backlog=64), []
 while len(kept) < 100:
     kept.append((socket.create_connection(server.getsockname()), server.accept()[0]))
@@ -134,27 +145,13 @@ time.sleep(30)"""
 
 def test_connections_to_itself_without_end_are_counted(bad: Callable[..., str], sandbox: None) -> None:
     """What waits in them is the kernel's memory, of which all of a machine has one share."""
-    env = envs.make("3dof-hit")
-    agent = build_agent(bad(CONNECTING), env, mode="sandbox")
-    agent.episode_start()
-    observation = env.reset(seed=0)
-    for _ in range(2):
-        agent.act(observation)
-    with pytest.raises(AgentDied, match="more than 128 sockets"):
-        agent.act(observation)
+    dies_in_its_third_action(bad(CONNECTING), "more than 128 sockets")
 
 
 def test_empty_files_without_end_are_counted(bad: Callable[..., str], sandbox: None) -> None:
     """They take no space where files lie, but the kernel's memory."""
     making = "for k in range(10**6): os.close(os.open(f'/tmp/{k}', os.O_CREAT))"
-    env = envs.make("3dof-defend")
-    agent = build_agent(bad(making), env, mode="sandbox")
-    agent.episode_start()
-    observation = env.reset(seed=0)
-    for _ in range(2):
-        agent.act(observation)
-    with pytest.raises(AgentDied, match="more than 20,000 files"):
-        agent.act(observation)
+    dies_in_its_third_action(bad(making), "more than 20,000 files")
 
 
 DAEMON = """

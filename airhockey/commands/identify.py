@@ -85,14 +85,8 @@ def _of_run(folder: Path, env: str | None) -> "tuple[list[str], str, list[Seen]]
         raise unknown("environment of this run", env, tuple(run.environments))
     envs = [one for one in run.environments if one == env or (env is None and one[0] == run.environments[0][0])]
     played = [of_run(run, one) for one in envs]
-    return envs, run.edition, [Seen(seen.observations, _commands(seen.actions)) for one in played for seen in one]
-
-
-def _commands(actions: Any) -> Any:
-    """Joint positions at the ends of the steps, from actions of any interpolation order. Shape (T, n)."""
-    if actions.ndim == 4:  # 20 set-points a step
-        return actions[:, -1, 0]
-    return actions if actions.ndim == 2 else actions[:, 0]
+    found = [Seen(seen.observations, of.set_points(seen.actions)[:, 0]) for of in played for seen in of]
+    return envs, run.edition, found
 
 
 def _written(found: "dict[str, Finding]", name: str, source: str) -> str:

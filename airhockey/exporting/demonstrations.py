@@ -90,6 +90,18 @@ class Demonstrations:
         """The shape of an action."""
         return ActionFormat(self.order, self.robot.n_joints)
 
+    def set_points(self, actions: Array) -> Array:
+        """Joint positions at the ends of control steps, then their velocities and accelerations as far as actions hold them.
+
+        Args:
+            actions: Of a demonstration. Shape (T, …).
+
+        Returns:
+            In [rad] and per [s]. Shape (T, 1 to 3, n).
+        """
+        ends = actions[:, -1] if self.order is None else actions  # of 20 set-points, the last one counts
+        return ends.reshape(len(ends), -1, self.robot.n_joints)
+
     def chosen(self, names: str | None) -> "Demonstrations":
         """Those of these names, separated by commas, or of the names that begin so, as "0/home" does; all for None.
 

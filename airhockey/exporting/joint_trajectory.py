@@ -52,7 +52,7 @@ def trajectory_of(demonstrations: Demonstrations, demonstration: Demonstration) 
     """
     n = demonstrations.robot.n_joints
     start, actions = demonstration.observations[0], demonstration.actions
-    rows = actions[:, -1] if demonstrations.order is None else actions.reshape(len(actions), -1, n)
+    rows = demonstrations.set_points(actions)
     position: Array = np.concatenate([start[None, JOINTS : JOINTS + n], rows[:, 0]])
     velocity: Array
     acceleration: Array
